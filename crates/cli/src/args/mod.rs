@@ -1,0 +1,116 @@
+//! The command line. Every parameter is declared once, here: help, completions, man pages and job files follow from it.
+
+mod display;
+mod effects;
+mod lights;
+mod picture;
+mod render;
+#[cfg(test)]
+mod tests;
+mod value;
+
+pub(crate) use render::{JobArgs, OutputArgs, PerformanceArgs, ProgressStyle, RenderArgs, SimdChoice};
+
+use clap::{Args, Parser, Subcommand, ValueHint};
+use clap_complete::Shell;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// What every help text ends with.
+const AFTER_HELP: &str = "\
+Exit codes:
+    0  done
+    1  the render finished, but an output could not be written
+    2  bad usage, job file or parameters
+    3  a scene, model, texture, picture or VPL file cannot be read or is malformed
+  130  interrupted (SIGINT, SIGTERM); what was rendered so far is written
+
+Environment:
+  LIGHTCUTS_PATH  more folders to search for models and textures, separated as in PATH
+  LIGHTCUTS_LOG   what to log, such as `debug`; stands above -v
+  NO_COLOR        no colours if set
+
+Start with `lightcuts info SCENE`, then `lightcuts render SCENE`.";
+
+/// Render scenes with global illumination from virtual point lights (VPLs) and lightcuts.
+#[derive(Debug, Parser)]
+#[command(name = "lightcuts", version, after_help = AFTER_HELP, arg_required_else_help = true, max_term_width = 100)]
+pub(crate) struct Cli {
+    /// Log what happens, on stderr; twice for more.
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    pub(crate) verbose: u8,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene, or render a picture again from the job in its file.
+    #[command(after_help = AFTER_HELP)]
+    Render(Box<RenderArgs>),
+    /// Show what was understood of a scene, or what a picture holds.
+    #[command(after_help = AFTER_HELP)]
+    Info(InfoArgs),
+    /// Print a completion script for a shell, to be stored where that shell looks for them.
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+    /// Print the man page, or write those of all commands to a folder.
+    Man {
+        /// Folder for `lightcuts.1`, `lightcuts-render.1`, ...
+        #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+        directory: Option<PathBuf>,
+    },
+}
+
+/// Arguments of `info`.
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    /// A scene, or a picture that lightcuts wrote.
+    #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
+    pub(crate) path: PathBuf,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    /// Print JSON for machines.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Where models and textures are searched.
+#[derive(Debug, Default, Args)]
+pub(crate) struct SearchArgs {
+    /// Folder to search for models and textures after the scene's own; may be repeated.
+    ///
+    /// Searched in this order: beside the file that names them, beside the scene, these folders, the job's `search-path`,
+    /// then those of the environment variable LIGHTCUTS_PATH.
+    #[arg(long = "search-path", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) folders: Vec<PathBuf>,
+}
+
+/// The settings that were given on the command line: serialised, the tables of a job file with only these keys.
+#[derive(Debug, Default, Args, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) struct SettingFlags {
+    #[command(flatten)]
+    run: picture::RunFlags,
+    #[command(flatten)]
+    image: picture::ImageFlags,
+    #[command(flatten)]
+    sampling: picture::SamplingFlags,
+    #[command(flatten)]
+    filter: picture::FilterFlags,
+    #[command(flatten)]
+    vpl: lights::VplFlags,
+    #[command(flatten)]
+    gather: lights::GatherFlags,
+    #[command(flatten)]
+    ambient_occlusion: effects::AmbientOcclusionFlags,
+    #[command(flatten)]
+    caustics: effects::CausticsFlags,
+    #[command(flatten)]
+    bloom: display::BloomFlags,
+    #[command(flatten)]
+    display: display::DisplayFlags,
+}

@@ -1,0 +1,107 @@
+//! Arguments of `render`: input, job, outputs, and what does not belong to the job.
+
+use super::{SearchArgs, SettingFlags};
+use clap::{Args, ValueEnum, ValueHint};
+use std::path::PathBuf;
+
+/// Most threads that can be asked for; more than any machine has, fewer than start to hurt.
+const MAX_THREADS: i64 = 1024;
+
+/// Arguments of `render`.
+#[derive(Debug, Default, Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct RenderArgs {
+    /// A scene; or a picture (.exr, .png) that lightcuts wrote, or a job (.toml), to render what it names.
+    #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath, required_unless_present = "job")]
+    pub(crate) scene: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+    #[command(flatten)]
+    pub(crate) settings: SettingFlags,
+    #[command(flatten)]
+    pub(crate) performance: PerformanceArgs,
+}
+
+/// What is written.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct OutputArgs {
+    /// Picture to write, .exr or .png; may be repeated [default: <scene>.png in the current folder].
+    ///
+    /// EXR: linear light in floats, every AOV, and the whole job, so that `lightcuts render FILE.exr` renders it again.
+    /// PNG: 8 bits for eyes, with the job too.
+    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) pictures: Vec<PathBuf>,
+    /// Write counts, times, memory and settings as JSON.
+    #[arg(long = "stats", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) stats: Option<PathBuf>,
+    /// Write the VPLs as CSV.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) write_vpls: Option<PathBuf>,
+    /// Write the whole job, every setting resolved, as TOML for --job.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) write_job: Option<PathBuf>,
+    /// Check everything and write the job if asked to, but do not render.
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+    /// No summary and no progress; warnings and errors only.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+    /// Progress on stderr [default: bar on a terminal, else plain].
+    #[arg(long, value_name = "STYLE", value_enum)]
+    pub(crate) progress: Option<ProgressStyle>,
+}
+
+/// Where the job comes from, beside flags.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Job")]
+pub(crate) struct JobArgs {
+    /// Settings from a job file, or from a picture that lightcuts wrote. Flags win over it, it wins over the scene.
+    ///
+    /// TOML with a table per group of these options: `[image] width = 640`. `scene`, `search-path` and `read-vpls` are
+    /// relative to the file. See --write-job for all keys.
+    #[arg(id = "job", long = "job", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) file: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    /// Take VPLs from a CSV that --write-vpls wrote, instead of placing them.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) read_vpls: Option<PathBuf>,
+}
+
+/// What changes the time a render takes, never the picture; not part of the job.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Performance")]
+pub(crate) struct PerformanceArgs {
+    /// Number of threads; 0 is one per processor.
+    #[arg(short = 'j', long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=MAX_THREADS))]
+    pub(crate) threads: u16,
+    /// Vector instructions of the processor; `off` to track down a fault.
+    #[arg(long, value_enum, default_value_t = SimdChoice::Auto)]
+    pub(crate) simd: SimdChoice,
+}
+
+/// Styles of progress.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ProgressStyle {
+    /// A bar with the time left
+    Bar,
+    /// Few lines of text
+    Plain,
+    /// A JSON object per line: stage, done, total, elapsed_s, remaining_s
+    Json,
+    /// Nothing
+    None,
+}
+
+/// Use of vector instructions.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SimdChoice {
+    /// What the processor offers
+    #[default]
+    Auto,
+    /// None
+    Off,
+}

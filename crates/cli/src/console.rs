@@ -1,0 +1,42 @@
+//! Standard output and error. Nothing here panics when the reader at the other end of a pipe has gone.
+
+use crate::exit::Failure;
+use miette::{MietteHandlerOpts, Report};
+use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
+
+/// Decides once how diagnostics look: in colours on a terminal, and elsewhere without line breaks of our own, so that
+/// `file:line:column` stays in one piece for other programs.
+pub(crate) fn set_up() {
+    let (colors, terminal) = (has_colors(), stderr().is_terminal());
+    let hook = miette::set_hook(Box::new(move |_| {
+        let options = MietteHandlerOpts::new().terminal_links(colors).wrap_lines(terminal).break_words(terminal);
+        Box::new(if colors { options } else { options.color(false) }.build())
+    }));
+    debug_assert!(hook.is_ok(), "the hook is set once");
+}
+
+/// Whether standard error wants colours: a terminal, unless NO_COLOR is set (no-color.org).
+pub(crate) fn has_colors() -> bool {
+    stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// Writes to standard output. A closed pipe is no failure: its reader has what it wanted.
+pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::output(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a line to standard error, if anybody still listens.
+pub(crate) fn note(line: &str) {
+    let _ = writeln!(stderr().lock(), "{line}");
+}
+
+/// Shows an error or a warning on standard error.
+pub(crate) fn show(report: &Report) {
+    note(format!("{report:?}").trim_end());
+}

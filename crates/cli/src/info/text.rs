@@ -1,0 +1,117 @@
+//! The same for people.
+
+use super::picture::PictureInfo;
+use super::scene::{Camera, Object, Parameter, SceneInfo, Texture};
+
+/// Objects that are listed; more are only counted.
+const MAX_OBJECTS: usize = 100;
+
+/// Of a scene: a line per matter, a table of the objects.
+pub(super) fn of_scene(info: &SceneInfo) -> String {
+    let totals = &info.totals;
+    let mut lines = vec![
+        line("scene", &info.name),
+        line("camera", &camera(&info.camera)),
+        line("background", &vector(info.background)),
+        line("lights", &lights(info)),
+        line("objects", &info.objects.len().to_string()),
+    ];
+    lines.extend(table(&info.objects));
+    let amounts = [(totals.triangles, "triangle"), (totals.spheres, "sphere"), (totals.squares, "square")];
+    lines.push(line("totals", &amounts.map(|(n, name)| count(n, name)).join(", ")));
+    lines.push(line(
+        "bounds",
+        &info.bounds.map_or("nothing to see".to_owned(), |[a, b]| format!("{} to {}", vector(a), vector(b))),
+    ));
+    lines.push(line("recommended", &recommended(&info.recommended)));
+    lines.extend(info.files.iter().map(|file| line("read", file)));
+    // The warnings themselves went to standard error.
+    lines.push(line("warnings", &info.warnings.len().to_string()));
+    lines.join("")
+}
+
+/// Of a picture.
+pub(super) fn of_picture(info: &PictureInfo) -> String {
+    let layers: Vec<_> = info.layers.iter().map(|layer| format!("{} ({})", layer.name, layer.kind)).collect();
+    let mut text = line("picture", &info.file)
+        + &line("size", &format!("{} x {}", info.width, info.height))
+        + &line("layers", &layers.join(", "))
+        + &line("version", info.version.as_deref().unwrap_or("unknown"));
+    match &info.job {
+        Some(job) => text += &format!("job\n{}\n", indented(job)),
+        None => text += &line("job", "none"),
+    }
+    text
+}
+
+fn line(name: &str, value: &str) -> String {
+    format!("{name:<12} {value}\n")
+}
+
+fn indented(text: &str) -> String {
+    let lines = text.lines().map(|line| if line.is_empty() { String::new() } else { format!("  {line}") });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+fn vector([x, y, z]: [f32; 3]) -> String {
+    format!("({x}, {y}, {z})")
+}
+
+fn count(number: usize, name: &str) -> String {
+    format!("{number} {name}{}", if number == 1 { "" } else { "s" })
+}
+
+fn camera(camera: &Camera) -> String {
+    let eye =
+        camera.eye_distance.map_or("parallel rays".to_owned(), |d| format!("eye {d} units behind the view plane"));
+    let (center, view, up) = (vector(camera.center), vector(camera.view), vector(camera.up));
+    format!("{eye}; centre {center}, view {view}, up {up}")
+}
+
+fn lights(info: &SceneInfo) -> String {
+    let kinds: Vec<_> = info.lights.iter().map(|(kind, number)| format!("{number} {kind}")).collect();
+    let kinds = if kinds.is_empty() { "none".to_owned() } else { kinds.join(", ") };
+    format!("{kinds}; {}", count(info.emitters, "emitter"))
+}
+
+fn recommended(parameters: &[Parameter]) -> String {
+    let told =
+        parameters.iter().map(
+            |&Parameter { name, cpu, gpu }| {
+                if cpu == gpu { format!("{name} {cpu}") } else { format!("{name} {cpu} (GPU {gpu})") }
+            },
+        );
+    let told: Vec<_> = told.collect();
+    if told.is_empty() { "nothing".to_owned() } else { told.join(", ") }
+}
+
+fn table(objects: &[Object]) -> Vec<String> {
+    let header = ["", "line", "kind", "F R K E", "triangles", "material", "texture"].map(str::to_owned);
+    let rows: Vec<_> = objects.iter().take(MAX_OBJECTS).enumerate().map(|(i, object)| row(i, object)).collect();
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let rows: Vec<_> = std::iter::once(header).chain(rows).collect();
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<_> = (0..7).map(width).collect();
+    let aligned = |row: &[String; 7]| {
+        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}"));
+        format!("  {}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
+    };
+    let mut lines: Vec<_> = rows.iter().map(aligned).collect();
+    if objects.len() > MAX_OBJECTS {
+        lines.push(format!("  ... and {} more\n", objects.len() - MAX_OBJECTS));
+    }
+    lines
+}
+
+fn row(index: usize, object: &Object) -> [String; 7] {
+    let kind = if object.name.is_empty() { object.kind.to_owned() } else { format!("{} {}", object.kind, object.name) };
+    let texture = object
+        .texture
+        .as_ref()
+        .map_or(String::new(), |Texture { name, width, height, mode }| format!("{name} {width} x {height} {mode}"));
+    let triangles = if object.triangles == 0 { String::new() } else { object.triangles.to_string() };
+    let optics = object.optics.map(|ratio| ratio.to_string()).join(" ");
+    [(index + 1).to_string(), object.line.to_string(), kind, optics, triangles, object.material.clone(), texture]
+}

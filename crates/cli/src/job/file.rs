@@ -1,0 +1,198 @@
+//! Jobs in files: TOML, alone or in the header of a picture.
+
+use super::diagnostic::{TOP_KEYS, toml_fault};
+use super::path;
+use crate::exit::{Exit, Failure};
+use crate::fault::fault;
+use lightcuts::{Settings, SettingsError, image};
+use serde::Deserialize;
+use std::io::Read;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use toml::de::{DeTable, Deserializer};
+
+/// Name of the text in a picture that holds the whole job as TOML.
+pub(crate) const JOB_ATTRIBUTE: &str = "lightcuts:job";
+/// Name of the text in a picture that holds the version of the program that made it.
+pub(crate) const VERSION_ATTRIBUTE: &str = "lightcuts:version";
+
+/// Longest job file in bytes; a whole job has about 2 KB.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// A job as far as a file tells it. Paths hold from the current folder.
+#[derive(Debug)]
+pub(crate) struct JobFile {
+    name: String,
+    text: String,
+    pub(crate) scene: Option<PathBuf>,
+    pub(crate) search_path: Vec<PathBuf>,
+    pub(crate) read_vpls: Option<PathBuf>,
+    /// The tables of settings, with the keys that are there.
+    pub(super) settings: toml::Table,
+}
+
+/// The keys beside the settings.
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+struct Head {
+    scene: Option<String>,
+    #[serde(default)]
+    search_path: Vec<String>,
+    read_vpls: Option<String>,
+}
+
+/// Whether the extension is `extension`, in either case.
+pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
+}
+
+/// Whether a file of this name holds a job and not a scene.
+pub(crate) fn is_job_carrier(path: &Path) -> bool {
+    ["exr", "png", "toml"].iter().any(|extension| has_extension(path, extension))
+}
+
+impl JobFile {
+    /// Reads a job file, or the job of a picture.
+    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+        let directory = path.parent().unwrap_or(Path::new(""));
+        let name = path.display().to_string();
+        if !has_extension(path, "exr") && !has_extension(path, "png") {
+            return Self::parse(&name, &read_text(path)?, directory);
+        }
+        let text = picture_text(path, JOB_ATTRIBUTE)?.ok_or_else(|| {
+            Failure::input(format!("{name} holds no job: only pictures that lightcuts wrote can be rendered again"))
+        })?;
+        Self::new(&format!("{name} ({JOB_ATTRIBUTE})"), &text, directory, true)
+    }
+
+    /// The job of a TOML text in `directory`.
+    pub(crate) fn parse(name: &str, text: &str, directory: &Path) -> Result<Self, Failure> {
+        Self::new(name, text, directory, false)
+    }
+
+    fn new(name: &str, text: &str, directory: &Path, in_picture: bool) -> Result<Self, Failure> {
+        let (head, settings) = checked(text).map_err(|error| toml_fault(name, text, &error))?;
+        let find = |path: &String| path::find(path, directory, in_picture);
+        Ok(Self {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            scene: head.scene.as_ref().map(find),
+            search_path: head.search_path.iter().map(find).collect(),
+            read_vpls: head.read_vpls.as_ref().map(find),
+            settings,
+        })
+    }
+
+    /// Where this job sets the parameter `table.key`, if it does.
+    pub(super) fn span_of(&self, parameter: &str) -> Option<Range<usize>> {
+        let mut table = DeTable::parse(&self.text).ok()?.into_inner();
+        let mut span = None;
+        for key in parameter.split('.') {
+            let value = table.remove(key)?;
+            span = Some(value.span());
+            table = value.into_inner().as_table().cloned().unwrap_or_default();
+        }
+        span
+    }
+
+    /// The complaint about a parameter that this job sets at `span`.
+    pub(super) fn out_of_range(&self, error: &SettingsError, span: Range<usize>) -> Failure {
+        fault(Exit::Usage, &self.name, &self.text, span, &error.to_string(), &format!("expected {}", error.expected))
+    }
+}
+
+/// Checks a job's text as far as it can be without the scene: syntax, keys, kinds of values.
+fn checked(text: &str) -> Result<(Head, toml::Table), toml::de::Error> {
+    let head = toml::from_str(text)?;
+    let mut document = DeTable::parse(text)?;
+    let mut settings: toml::Table = toml::from_str(text)?;
+    for key in TOP_KEYS {
+        document.get_mut().remove(key);
+        settings.remove(key);
+    }
+    Settings::deserialize(Deserializer::from(document))?;
+    Ok((head, settings))
+}
+
+fn read_text(path: &Path) -> Result<String, Failure> {
+    let refuse =
+        |why: &str| Failure::usage(format!("cannot read the job {}: {why}", path.display()), "a job is a TOML file");
+    require_regular(path).map_err(|why| refuse(&why))?;
+    let file = std::fs::File::open(path).map_err(|error| refuse(&error.to_string()))?;
+    let mut bytes = Vec::new();
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|error| refuse(&error.to_string()))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(refuse("it is longer than 1 MiB"));
+    }
+    String::from_utf8(bytes).map_err(|_| refuse("it is not UTF-8 text"))
+}
+
+/// The text `keyword` in the header of a picture.
+pub(crate) fn picture_text(path: &Path, keyword: &str) -> Result<Option<String>, Failure> {
+    require_regular(path).map_err(|why| Failure::input(format!("cannot read {}: {why}", path.display())))?;
+    let text = if has_extension(path, "exr") {
+        image::read_exr_attributes(path).map(|mut attributes| attributes.remove(keyword))
+    } else {
+        image::read_png_text(path, keyword)
+    };
+    text.map_err(Failure::input)
+}
+
+/// Fails unless there is a regular file: a pipe would be waited for without end.
+pub(crate) fn require_regular(path: &Path) -> Result<(), String> {
+    match std::fs::metadata(path) {
+        Ok(metadata) if metadata.is_file() => Ok(()),
+        Ok(_) => Err("it is not a regular file".to_owned()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn complaint(text: &str) -> String {
+        let failure = JobFile::parse("job.toml", text, Path::new("")).unwrap_err();
+        let labels = failure.report.labels().into_iter().flatten();
+        labels.fold(failure.report.to_string(), |all, label| format!("{all} | {}", label.label().unwrap_or_default()))
+    }
+
+    #[test]
+    fn typos_are_named_with_their_place_and_the_nearest_key() {
+        let typo = complaint("scene = 'a'\n[sampling]\nsmaples = 4\n");
+        assert!(typo.starts_with("job.toml:3:1: unknown key `smaples`; expected `sampler`, `samples`"), "{typo}");
+        assert!(typo.ends_with("did you mean `samples`?"), "{typo}");
+        let typo = complaint("secne = 'a'");
+        assert!(typo.starts_with("job.toml:1:1: unknown key `secne`") && typo.contains("mean `scene`?"), "{typo}");
+        let typo = complaint("[gather]\nstrategy = 'lightcut'\n");
+        assert!(typo.starts_with("job.toml:2:12: unknown value `lightcut`; expected `all`, `lightcuts`"), "{typo}");
+    }
+
+    #[test]
+    fn wrong_kinds_of_values_are_told_in_plain_words() {
+        let cases = [
+            ("[gather]\nthreshold = 'x'", "job.toml:2:13: wrong kind of value: string \"x\", expected a number"),
+            ("[image]\nwidth = -1", "job.toml:2:9: invalid value: integer `-1`, expected a whole number, 0 or more"),
+            (
+                "[image]\nwidth = 1.5",
+                "job.toml:2:9: wrong kind of value: number `1.5`, expected a whole number, 0 or more",
+            ),
+            ("image = 3", "job.toml:1:9: wrong kind of value: integer `3`, expected a table"),
+            ("scene = 3", "job.toml:1:9: wrong kind of value: integer `3`, expected a string"),
+            ("search-path = 'a'", "job.toml:1:15: wrong kind of value: string \"a\", expected a list"),
+            ("[image\nwidth = 1", "job.toml:1:7: "),
+        ];
+        for (text, expected) in cases {
+            let found = complaint(text);
+            assert!(found.starts_with(expected), "{text:?}: {found}");
+        }
+    }
+
+    #[test]
+    fn parameters_are_found_again() {
+        let job = JobFile::parse("a", "[image]\nwidth = 0\n[display.local]\nkey = 1\n", Path::new("")).unwrap();
+        assert_eq!(job.span_of("image.width"), Some(16..17));
+        assert_eq!(job.span_of("image.height"), None);
+        assert!(job.span_of("display").is_some());
+    }
+}

@@ -1,0 +1,55 @@
+//! Settings from four sources, by laying TOML tables over each other.
+
+use super::JobFile;
+use crate::args::SettingFlags;
+use crate::exit::Failure;
+use lightcuts::Settings;
+use toml::{Table, Value};
+
+/// `scene` (built-in defaults with the scene's recommendations), under the job files in their order, under the flags;
+/// checked, so that rendering cannot fail.
+pub(crate) fn resolve(scene: &Settings, files: &[JobFile], flags: &SettingFlags) -> Result<Settings, Failure> {
+    let unexpected = |error: &dyn ToString| Failure::usage(error.to_string(), "see `lightcuts render --help`");
+    let mut table = Table::try_from(scene).map_err(|error| unexpected(&error))?;
+    for file in files {
+        overlay(&mut table, &file.settings);
+    }
+    let flags = Table::try_from(flags).map_err(|error| unexpected(&error))?;
+    overlay(&mut table, &flags);
+    let settings: Settings = table.try_into().map_err(|error: toml::de::Error| unexpected(&error.message()))?;
+    settings.validate().map_err(|error| {
+        let culprit = files.iter().rev().find_map(|file| Some((file, file.span_of(error.name)?)));
+        match culprit {
+            _ if is_set(&flags, error.name) => Failure::usage(error.to_string(), "it comes from the command line"),
+            Some((file, span)) => file.out_of_range(&error, span),
+            None => Failure::usage(error.to_string(), "it comes from the scene's recommendations"),
+        }
+    })?;
+    Ok(settings)
+}
+
+/// Lays `upper` over `lower`: tables key by key, any other value as a whole.
+fn overlay(lower: &mut Table, upper: &Table) {
+    for (key, value) in upper {
+        match (lower.get_mut(key), value) {
+            (Some(Value::Table(below)), Value::Table(above)) => overlay(below, above),
+            _ => {
+                lower.insert(key.clone(), value.clone());
+            }
+        }
+    }
+}
+
+/// Whether `table.key` has a value.
+fn is_set(table: &Table, parameter: &str) -> bool {
+    let (first, rest) = parameter.split_once('.').unwrap_or((parameter, ""));
+    match table.get(first) {
+        Some(Value::Table(inner)) if rest.is_empty() => inner.values().any(|value| !is_empty_table(value)),
+        Some(Value::Table(inner)) => is_set(inner, rest),
+        found => found.is_some(),
+    }
+}
+
+fn is_empty_table(value: &Value) -> bool {
+    value.as_table().is_some_and(Table::is_empty)
+}

@@ -1,0 +1,25 @@
+//! The `lightcuts` command: render scenes with global illumination, look into them.
+//!
+//! The command line ([`args`]) and job files ([`job`]) become one finished plan ([`plan`]) before anything is rendered;
+//! after that nobody asks what was typed. How the command can end is in [`exit`].
+
+mod args;
+mod command;
+mod console;
+mod exit;
+mod fault;
+mod info;
+mod interrupt;
+mod job;
+mod outputs;
+mod plan;
+mod progress;
+mod render;
+mod report;
+mod shell;
+
+use clap::Parser;
+
+fn main() -> std::process::ExitCode {
+    command::run(&args::Cli::parse()).into()
+}

@@ -1,0 +1,118 @@
+//! The command `render`: plan, render, write.
+
+use crate::args::{PerformanceArgs, RenderArgs, SimdChoice};
+use crate::exit::{Exit, Failure};
+use crate::fault::{fault, span_at};
+use crate::job::{JOB_ATTRIBUTE, Job, VERSION_ATTRIBUTE, require_regular};
+use crate::outputs::{Kind, job_text};
+use crate::plan::Plan;
+use crate::progress::Progress;
+use crate::report::{Statistics, summary};
+use crate::{console, interrupt};
+use lightcuts::{Options, Rendering, Simd, VplCsvError, World, image, vpls_from_csv, vpls_to_csv};
+use std::path::Path;
+
+/// Text in a picture that was not finished.
+const COMPLETE_ATTRIBUTE: &str = "lightcuts:complete";
+
+/// Runs the command.
+pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
+    start_threads(&args.performance)?;
+    interrupt::listen();
+    let plan = Plan::new(args)?;
+    if args.output.dry_run {
+        return dry_run(&plan, args.output.quiet);
+    }
+    let options = options(&plan, &args.performance)?;
+    let world = World::new(&plan.scene).map_err(Failure::input)?;
+    if interrupt::came() {
+        console::note("lightcuts: nothing was rendered; nothing is written");
+        return Ok(Exit::Interrupted);
+    }
+    let progress = Progress::new(args.output.progress, args.output.quiet, logs);
+    let rendering = lightcuts::render(&world, &plan.job.settings, &options, &progress)
+        .map_err(|error| Failure::usage(error.to_string(), "see `lightcuts render --help`"))?;
+    progress.finish();
+    finish(&plan, &rendering, args.output.quiet)
+}
+
+/// Writes the outputs and sums up.
+fn finish(plan: &Plan, rendering: &Rendering, quiet: bool) -> Result<Exit, Failure> {
+    let statistics = Statistics::new(plan, rendering);
+    let (written, exit) = plan.outputs.write(|kind, path| match kind {
+        Kind::Exr => write_exr(path, rendering, &plan.job),
+        Kind::Png => write_png(path, rendering, &plan.job),
+        Kind::Stats => write(path, &statistics.to_json()?),
+        Kind::Vpls => write(path, &vpls_to_csv(&rendering.vpls)),
+        Kind::Job => write(path, &job_text(&plan.job, path)?),
+    });
+    if !quiet {
+        console::print(summary(&statistics, &written).as_bytes())?;
+    }
+    if rendering.stats.complete {
+        return Ok(exit);
+    }
+    let names: Vec<_> = written.iter().map(|path| path.display().to_string()).collect();
+    console::note(&format!("lightcuts: the render is not complete; written so far: {}", names.join(", ")));
+    Ok(Exit::Interrupted)
+}
+
+fn dry_run(plan: &Plan, quiet: bool) -> Result<Exit, Failure> {
+    let (written, exit) = plan.outputs.write(|_, path| write(path, &job_text(&plan.job, path)?));
+    if !quiet {
+        let names = written.iter().map(|path| format!("wrote {}\n", path.display()));
+        let said = format!("{}: scene and job are sound; nothing was rendered\n", plan.job.scene.display());
+        console::print((said + &names.collect::<String>()).as_bytes())?;
+    }
+    Ok(exit)
+}
+
+fn start_threads(args: &PerformanceArgs) -> Result<(), Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(args.threads)).build_global();
+    pool.map_err(|error| Failure::usage(format!("cannot start threads: {error}"), "ask for fewer with --threads"))
+}
+
+fn options(plan: &Plan, args: &PerformanceArgs) -> Result<Options, Failure> {
+    let simd = match args.simd {
+        SimdChoice::Auto => Simd::Auto,
+        SimdChoice::Off => Simd::Off,
+    };
+    let mut options = Options { simd, ..Options::default() };
+    if let Some(path) = &plan.job.read_vpls {
+        let refuse = |why: String| Failure::input(format!("cannot read the VPLs {}: {why}", path.display()));
+        require_regular(path).map_err(refuse)?;
+        let text = std::fs::read_to_string(path).map_err(|error| refuse(error.to_string()))?;
+        let malformed = |VplCsvError { line, column, message }| {
+            let span = span_at(&text, line, column);
+            fault(Exit::Input, &path.display().to_string(), &text, span, &message, "here")
+        };
+        options.vpls = Some(vpls_from_csv(&text).map_err(malformed)?);
+    }
+    Ok(options)
+}
+
+/// Texts that go into a picture, apart from the job.
+fn remarks(rendering: &Rendering) -> Vec<(&'static str, &'static str)> {
+    let complete = (!rendering.stats.complete).then_some((COMPLETE_ATTRIBUTE, "false"));
+    [(VERSION_ATTRIBUTE, env!("CARGO_PKG_VERSION"))].into_iter().chain(complete).collect()
+}
+
+fn write_exr(path: &Path, rendering: &Rendering, job: &Job) -> Result<(), Failure> {
+    let text = job_text(job, path)?;
+    let mut layers = rendering.layers();
+    for (name, value) in remarks(rendering).into_iter().chain([(JOB_ATTRIBUTE, text.as_str())]) {
+        layers.set_attribute(name, value).map_err(Failure::output)?;
+    }
+    image::write_exr(path, &layers).map_err(Failure::output)
+}
+
+fn write_png(path: &Path, rendering: &Rendering, job: &Job) -> Result<(), Failure> {
+    let text = job_text(job, path)?;
+    let texts: Vec<_> = [(JOB_ATTRIBUTE, text.as_str())].into_iter().chain(remarks(rendering)).collect();
+    let display = &job.settings.display;
+    image::write_png_with_text(path, &rendering.displayed(display), display.transfer, &texts).map_err(Failure::output)
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    image::write_atomic(path, text.as_bytes()).map_err(Failure::output)
+}

@@ -1,0 +1,44 @@
+//! Signals: the first ends the render in good order, the second at once.
+
+#![cfg(unix)]
+
+use crate::support::Folder;
+use lightcuts::image::read_exr;
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Child, ChildStderr, Command, Stdio};
+
+/// A render that would take hours, in its first pass.
+fn slow_render(folder: &Folder) -> (Child, BufReader<ChildStderr>) {
+    let arguments = "render scene.txt --size 512x512 --samples 4096 --progress json -o a.exr -o a.png --stats s.json";
+    let mut child = folder.command(arguments).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    // A second line: a tile is done, so there is something to write.
+    for _ in 0..2 {
+        stderr.read_line(&mut line).unwrap();
+    }
+    assert!(line.contains("first_pass"), "{line}");
+    (child, stderr)
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("sh").args(["-c", &format!("kill -{name} {}", child.id())]).status().unwrap();
+    assert!(sent.success());
+}
+
+#[test]
+fn an_interrupted_render_writes_what_there_is() {
+    for name in ["INT", "TERM"] {
+        let folder = Folder::new();
+        let (mut child, mut stderr) = slow_render(&folder);
+        signal(&child, name);
+        let mut said = String::new();
+        stderr.read_to_string(&mut said).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{said}");
+        assert!(said.contains("interrupted") && said.contains("written so far: a.exr, a.png, s.json"), "{said}");
+        let layers = read_exr(folder.at("a.exr")).unwrap();
+        assert_eq!((layers.width(), layers.height()), (512, 512));
+        assert_eq!(layers.attribute("lightcuts:complete"), Some("false"));
+        assert!(folder.has("a.png") && folder.text("s.json").contains("\"complete\": false"));
+    }
+}

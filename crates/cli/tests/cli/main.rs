@@ -1,0 +1,11 @@
+//! The real binary: what it writes, what it says, how it ends.
+
+mod inputs;
+mod interrupt;
+mod jobs;
+#[path = "../../../import/tests/malformed/mod.rs"]
+mod malformed;
+mod other_commands;
+mod outputs;
+mod rendering;
+mod support;

@@ -1,0 +1,151 @@
+//! EXR files: writing and reading [`Layers`].
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use exr::block::chunk::CompressedBlock;
+use exr::block::{BlockIndex, UncompressedBlock};
+use exr::meta::BlockDescription;
+use exr::meta::header::Header;
+use exr::prelude::attribute::ChannelDescription;
+use exr::prelude::{Compression, LineOrder, SampleType, Text, Vec2};
+use rayon::prelude::*;
+
+use crate::exr_decode::decode;
+use crate::exr_header::{SampleKind, encode, read_attributes};
+use crate::exr_layout::{Channel, channels_of, layers_of};
+use crate::limits::check_writable;
+use crate::{ImageError, Layers, write_atomic};
+
+/// Scan lines per block of ZIP compression.
+const BLOCK_ROWS: usize = 16;
+
+/// Writes layers to an EXR file, atomically and without loss (ZIP).
+///
+/// One part; the beauty is `R`, `G`, `B`, so that every viewer shows it, and AOVs have prefixed names (`albedo.R`,
+/// `normal.X`, `depth.Z`, `object_id.ID`), which more programs read than separate parts. Attributes are UTF-8 texts.
+/// The file's bytes depend on the layers alone: no time stamp, blocks in order on any number of threads.
+///
+/// Fails with [`ImageError::Encode`] on an empty picture or one above [`MAX_PIXELS`](crate::MAX_PIXELS), and as [`write_atomic`].
+pub fn write_exr(path: impl AsRef<Path>, layers: &Layers) -> Result<(), ImageError> {
+    let path = path.as_ref();
+    write_atomic(path, &encoded(path, layers)?)
+}
+
+/// Reads an EXR file: its first part with the channels R, G and B, of halves or floats, as the beauty, and the other
+/// channels of that part as layers.
+///
+/// Reads scan lines and tiles in every compression but HTJ2K; of mip maps the full resolution. Channels that form no
+/// kind of [`LayerData`](crate::LayerData) keep their full names (`A` for alpha). The picture is the data window; the
+/// display window is ignored.
+///
+/// Fails with [`ImageError::Io`], or with [`ImageError::Malformed`] on a damaged file, on one above [`MAX_PIXELS`](crate::MAX_PIXELS) or
+/// [`MAX_DECODED_BYTES`](crate::MAX_DECODED_BYTES), on deep and on subsampled pixels. Allocates nothing that the file's
+/// length does not justify.
+pub fn read_exr(path: impl AsRef<Path>) -> Result<Layers, ImageError> {
+    let path = path.as_ref();
+    let bytes = fs::read(path).map_err(|source| ImageError::io("read", path, source))?;
+    // Last resort: on damaged compressed data the exr crate may still fail an assertion or an index check, and a file
+    // must never end the program. Nothing is shared with the closure, so nothing can be left half changed.
+    let decoded = catch_unwind(AssertUnwindSafe(|| decode(path, &bytes)))
+        .unwrap_or_else(|_| Err(ImageError::malformed(path, "the EXR decoder failed on damaged data")))?;
+    let attributes = read_attributes(&mut &bytes[..], decoded.part)
+        .map_err(|error| ImageError::malformed(path, error.to_string()))?;
+    let layers = layers_of(path, decoded.width, decoded.height, decoded.channels)?;
+    Ok(layers.with_attributes(attributes))
+}
+
+/// Reads the text attributes of an EXR file's first part, without its pixels.
+///
+/// Fails with [`ImageError::Io`] or [`ImageError::Malformed`].
+pub fn read_exr_attributes(path: impl AsRef<Path>) -> Result<BTreeMap<String, String>, ImageError> {
+    let path = path.as_ref();
+    let file = File::open(path).map_err(|source| ImageError::io("read", path, source))?;
+    read_attributes(&mut BufReader::new(file), 0).map_err(|error| match error.kind() {
+        std::io::ErrorKind::InvalidData | std::io::ErrorKind::UnexpectedEof => {
+            ImageError::malformed(path, error.to_string())
+        }
+        _ => ImageError::io("read", path, error),
+    })
+}
+
+/// The bytes of a file: header, offset table, blocks.
+fn encoded(path: &Path, layers: &Layers) -> Result<Vec<u8>, ImageError> {
+    let (width, height) = (layers.width(), layers.height());
+    check_writable(path, width, height)?;
+    let channels = channels_of(layers);
+    let blocks = compressed_blocks(path, width, height, &channels)?;
+    let kinds: Vec<_> = channels.iter().map(|channel| (channel.name.clone(), channel.kind())).collect();
+    // The casts hold: `check_writable` bounds both sides.
+    let mut bytes = encode(width as i32, height as i32, &kinds, layers.attributes());
+    append_blocks(&mut bytes, &blocks);
+    Ok(bytes)
+}
+
+/// Appends the offset table and the blocks: first row, length, data.
+fn append_blocks(bytes: &mut Vec<u8>, blocks: &[(i32, Vec<u8>)]) {
+    let mut offset = bytes.len() + 8 * blocks.len();
+    for (_, data) in blocks {
+        bytes.extend((offset as u64).to_le_bytes());
+        offset += 8 + data.len();
+    }
+    bytes.reserve(offset - bytes.len());
+    for (first_row, data) in blocks {
+        bytes.extend(first_row.to_le_bytes());
+        bytes.extend((data.len() as u32).to_le_bytes());
+        bytes.extend(data);
+    }
+}
+
+/// The blocks from the top: first row and compressed bytes. Compressed in parallel, collected in order.
+fn compressed_blocks(
+    path: &Path,
+    width: usize,
+    height: usize,
+    channels: &[Channel<'_>],
+) -> Result<Vec<(i32, Vec<u8>)>, ImageError> {
+    let headers = [exr_header(width, height, channels)];
+    let compress = |first_row: usize| {
+        let rows = BLOCK_ROWS.min(height - first_row);
+        let mut data = Vec::with_capacity(4 * width * rows * channels.len());
+        for y in first_row..first_row + rows {
+            for channel in channels {
+                channel.append_row(y, &mut data);
+            }
+        }
+        let index = BlockIndex {
+            layer: 0,
+            pixel_position: Vec2(0, first_row),
+            pixel_size: Vec2(width, rows),
+            level: Vec2(0, 0),
+        };
+        let chunk = UncompressedBlock { index, data }
+            .compress_to_chunk(&headers)
+            .map_err(|error| ImageError::encode(path, error.to_string()))?;
+        match chunk.compressed_block {
+            CompressedBlock::ScanLine(block) => Ok((block.y_coordinate, block.compressed_pixels_le)),
+            _ => Err(ImageError::encode(path, "the encoder did not return scan lines")),
+        }
+    };
+    (0..height.div_ceil(BLOCK_ROWS)).into_par_iter().map(|block| compress(block * BLOCK_ROWS)).collect()
+}
+
+/// The header as the exr crate wants it for compressing; the header in the file is our own.
+fn exr_header(width: usize, height: usize, channels: &[Channel<'_>]) -> Header {
+    let description = |channel: &Channel<'_>| {
+        let kind = match channel.kind() {
+            SampleKind::F32 => SampleType::F32,
+            SampleKind::U32 => SampleType::U32,
+        };
+        ChannelDescription::new(Text::from_slice_unchecked(channel.name.as_bytes()), kind, false)
+    };
+    let channels = channels.iter().map(description).collect();
+    Header::new(Text::from_slice_unchecked(b""), (width, height), channels).with_encoding(
+        Compression::ZIP16,
+        BlockDescription::ScanLines,
+        LineOrder::Increasing,
+    )
+}

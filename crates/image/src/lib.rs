@@ -1,0 +1,32 @@
+//! Pictures: development, tone mapping, bloom, EXR and PNG written atomically.
+//!
+//! A picture is a [`Plane`] of pixels, row 0 at the TOP; [`Image`] is a plane of linear RGB. A finished render with its
+//! AOVs and its job is a set of [`Layers`], stored as one EXR file ([`write_exr`], [`read_exr`]); a picture for eyes is
+//! a PNG ([`write_png`]) after [`bloom`] and [`ToneMapping`]. Every file is written atomically ([`write_atomic`]).
+//!
+//! Everything here is deterministic: same input, same bits, on any number of threads.
+
+mod atomic;
+mod bloom;
+mod error;
+mod exr_decode;
+mod exr_file;
+mod exr_header;
+mod exr_layout;
+mod layers;
+mod limits;
+pub mod metrics;
+mod plane;
+mod png;
+mod tone_mapping;
+
+pub use atomic::write_atomic;
+pub use bloom::bloom;
+pub use error::ImageError;
+pub use exr_file::{read_exr, read_exr_attributes, write_exr};
+pub use layers::{LayerData, Layers};
+pub use limits::{MAX_DECODED_BYTES, MAX_PIXELS};
+pub use metrics::{fraction_within, max_abs_difference};
+pub use plane::{Image, Plane, luminance};
+pub use png::{Transfer, read_png, read_png_text, write_png, write_png_with_text};
+pub use tone_mapping::{GlobalToneMapping, LocalToneMapping, ToneMapping};

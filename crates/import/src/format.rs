@@ -1,0 +1,59 @@
+//! Tells files of other formats from scene texts, so that the message says what they are.
+
+use crate::ImportError;
+use std::path::Path;
+
+const OBJ_HELP: &str = "write a scene with a camera, a light and a line such as `O | FRKE{0, 0, 1, 1} | PATH:model.obj | SMTH(1) | \
+                        S{0, 0, 0} | D{0.5, 0.5, 0.5} | A{0, 0, 0} | SH(20)`";
+
+/// Extensions that scenes have elsewhere, and what they mean.
+const KNOWN_EXTENSIONS: [(&str, &str); 14] = [
+    ("obj", "an OBJ model without camera and lights"),
+    ("mtl", "an MTL material library"),
+    ("ply", "a PLY model"),
+    ("stl", "an STL model"),
+    ("gltf", "a glTF scene"),
+    ("glb", "a glTF scene"),
+    ("pbrt", "a pbrt scene"),
+    ("xml", "an XML file, maybe a Mitsuba scene"),
+    ("json", "a JSON file"),
+    ("usd", "a USD scene"),
+    ("usda", "a USD scene"),
+    ("blend", "a Blender file"),
+    ("png", "an image"),
+    ("jpg", "an image"),
+];
+
+/// First bytes that give a format away.
+const KNOWN_STARTS: [(&[u8], &str); 10] = [
+    (b"glTF", "a glTF scene"),
+    (b"ply\n", "a PLY model"),
+    (b"ply\r", "a PLY model"),
+    (b"<", "an XML file, maybe a Mitsuba scene"),
+    (b"{", "a JSON file, maybe a glTF scene"),
+    (b"\x89PNG", "an image"),
+    (b"\xff\xd8\xff", "an image"),
+    (b"v/1\x01", "an image"),
+    (b"BLENDER", "a Blender file"),
+    (b"mtllib ", "an OBJ model without camera and lights"),
+];
+
+/// Fails for a file whose extension belongs to another format, before it is read: models may be large.
+pub(crate) fn refuse_known_extensions(path: &Path) -> Result<(), ImportError> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let known = KNOWN_EXTENSIONS.iter().find(|(known, _)| *known == extension);
+    // A directory may be called anything; that it is one is the better message.
+    known.filter(|_| path.is_file()).map_or(Ok(()), |(_, found)| Err(unknown(path, found)))
+}
+
+/// Fails for content that starts as another format does.
+pub(crate) fn refuse_other_content(path: &Path, bytes: &[u8]) -> Result<(), ImportError> {
+    let content = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let known = KNOWN_STARTS.iter().find(|(start, _)| content.starts_with(start));
+    known.map_or(Ok(()), |(_, found)| Err(unknown(path, found)))
+}
+
+fn unknown(path: &Path, found: &'static str) -> ImportError {
+    let help = found.starts_with("an OBJ").then_some(OBJ_HELP);
+    ImportError::UnknownFormat { path: path.to_path_buf(), found, help }
+}

@@ -1,0 +1,113 @@
+//! Lines of a file that is too large to hold: read one by one, joined where they end in a backslash.
+
+use crate::Fault;
+use crate::resolver::FileError;
+use crate::source::{decode_line, first_binary_byte};
+use std::io::{BufRead, BufReader, Read};
+use std::ops::Range;
+use std::path::Path;
+
+/// Longest logical line, in bytes: a polygon of a million corners still fits.
+const MAX_LINE: usize = 16 << 20;
+
+/// Reads logical lines.
+pub(crate) struct Lines<'a> {
+    reader: BufReader<Box<dyn Read>>,
+    path: &'a Path,
+    name: &'a str,
+    limit: u64,
+    length: u64,
+    number: u32,
+    raw: Vec<u8>,
+    text: String,
+    /// Where in `text` each line of the file starts, and its number.
+    parts: Vec<(usize, u32)>,
+}
+
+/// What came instead of a line.
+pub(crate) enum LineError {
+    File(FileError),
+    Content(Box<Fault>),
+}
+
+impl<'a> Lines<'a> {
+    pub(crate) fn new(reader: Box<dyn Read>, path: &'a Path, name: &'a str, limit: u64) -> Self {
+        let reader = BufReader::with_capacity(1 << 16, reader);
+        Self {
+            reader,
+            path,
+            name,
+            limit,
+            length: 0,
+            number: 0,
+            raw: Vec::new(),
+            text: String::new(),
+            parts: Vec::new(),
+        }
+    }
+
+    /// Moves to the next line; false at the end of the file.
+    pub(super) fn advance(&mut self) -> Result<bool, LineError> {
+        self.text.clear();
+        self.parts.clear();
+        loop {
+            if !self.read_raw()? {
+                return Ok(!self.parts.is_empty());
+            }
+            self.parts.push((self.text.len(), self.number));
+            self.text.push_str(&decode_line(&self.raw));
+            if let Some(byte) = first_binary_byte(&self.raw) {
+                let start = self.text.len() - decode_line(&self.raw[byte..]).len();
+                let message = format!("byte {:#04x} shows that this is not text", self.raw[byte]);
+                return Err(self.content_error(start..start + 1, &message, "an OBJ model in text form"));
+            }
+            if self.text.len() > MAX_LINE {
+                let message = format!("the line is longer than {MAX_LINE} bytes");
+                return Err(self.content_error(0..1, &message, "an OBJ model in text form"));
+            }
+            if !self.text.ends_with('\\') {
+                return Ok(true);
+            }
+            // A blank in place of the backslash keeps the columns right and the words apart.
+            self.text.pop();
+            self.text.push(' ');
+        }
+    }
+
+    /// The current line, without line break and comment sign interpretation.
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// A fault at `span` of [`Self::text`].
+    pub(super) fn fault(&self, span: Range<usize>, message: &str) -> Fault {
+        let part = self.parts.partition_point(|(start, _)| *start <= span.start).saturating_sub(1);
+        let (start, number) = self.parts.get(part).copied().unwrap_or((0, self.number));
+        let end = self.parts.get(part + 1).map_or(self.text.len(), |(end, _)| *end);
+        let within = span.start.clamp(start, end) - start..span.end.clamp(start, end) - start;
+        Fault::new(self.name, number, &self.text[start..end], within, message)
+    }
+
+    fn content_error(&self, span: Range<usize>, message: &str, expected: &str) -> LineError {
+        LineError::Content(Box::new(self.fault(span, message).expected(expected)))
+    }
+
+    /// Reads one line of the file into `raw`, without its end; false at the end of the file.
+    fn read_raw(&mut self) -> Result<bool, LineError> {
+        self.raw.clear();
+        let path = || self.path.to_path_buf();
+        let mut part = (&mut self.reader).take(MAX_LINE as u64 + 1);
+        let count = part
+            .read_until(b'\n', &mut self.raw)
+            .map_err(|error| LineError::File(FileError::Io { path: path(), error }))?;
+        self.length += count as u64;
+        if self.length > self.limit {
+            return Err(LineError::File(FileError::TooLong { path: path(), length: self.length, limit: self.limit }));
+        }
+        self.number += 1;
+        while let [.., b'\n' | b'\r'] = self.raw[..] {
+            self.raw.pop();
+        }
+        Ok(count > 0)
+    }
+}

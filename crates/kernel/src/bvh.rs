@@ -1,0 +1,177 @@
+//! The 8-wide bounding volume hierarchy: node layout and plain traversal.
+//!
+//! The CPU device replaces [`closest_hit`] and [`any_hit`] by SIMD versions that are tested against these.
+
+use crate::Rules;
+use crate::intersect::{
+    LANES, Sphere, Square, TriangleBlock, intersect_sphere, intersect_square, intersect_triangle, min_determinant,
+};
+use crate::ray::{Hit, Ray, safe_reciprocal};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// Most entries that a traversal can have to remember: 7 per level of the deepest tree that the builder makes.
+pub const STACK_SIZE: usize = 512;
+
+/// Relative slack of slab tests, above twice their rounding error (Ize 2013, "Robust BVH Ray Traversal").
+pub const SLAB_SLACK: f32 = 1.0 + 4e-7;
+
+/// Eight children's boxes, component by component, rounded outwards. Empty children have inverted boxes.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct BvhNode {
+    /// Lower corners: x of all children, y of all children, z of all children.
+    pub lower: [[f32; LANES]; 3],
+    /// Upper corners.
+    pub upper: [[f32; LANES]; 3],
+    /// The children, as [`ChildRef`]s.
+    pub child: [u32; LANES],
+}
+
+/// What a child of a node is: a node or a leaf of one kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ChildRef {
+    /// Another node.
+    Node(u32),
+    /// A block of up to eight triangles.
+    Triangles(u32),
+    /// One sphere.
+    Sphere(u32),
+    /// One square.
+    Square(u32),
+}
+
+impl ChildRef {
+    const SHIFT: u32 = 30;
+    const INDEX: u32 = (1 << Self::SHIFT) - 1;
+
+    /// Two bits of kind, thirty of index.
+    pub const fn pack(self) -> u32 {
+        match self {
+            Self::Node(i) => i,
+            Self::Triangles(i) => i | 1 << Self::SHIFT,
+            Self::Sphere(i) => i | 2 << Self::SHIFT,
+            Self::Square(i) => i | 3 << Self::SHIFT,
+        }
+    }
+
+    /// The inverse of [`ChildRef::pack`].
+    pub const fn unpack(packed: u32) -> Self {
+        let index = packed & Self::INDEX;
+        match packed >> Self::SHIFT {
+            0 => Self::Node(index),
+            1 => Self::Triangles(index),
+            2 => Self::Sphere(index),
+            _ => Self::Square(index),
+        }
+    }
+}
+
+/// All that rays can hit, as flat slices.
+#[derive(Debug, Clone, Copy)]
+pub struct Geometry<'a> {
+    /// Nodes; the first is the root. Empty if there is nothing to hit.
+    pub nodes: &'a [BvhNode],
+    /// Triangle leaves.
+    pub triangles: &'a [TriangleBlock],
+    /// Sphere leaves.
+    pub spheres: &'a [Sphere],
+    /// Square leaves.
+    pub squares: &'a [Square],
+}
+
+/// The nearest hit between the ray's ends; of equal hits the first in file order.
+pub fn closest_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> Hit {
+    let mut best = Hit::none(ray.t_max);
+    traverse(geometry, ray, |child, ray| {
+        intersect_leaf(geometry, child, ray, rules, &mut |hit| best.take_nearer(hit));
+        best.t
+    });
+    best
+}
+
+/// Whether anything lies between the ray's ends.
+pub fn any_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> bool {
+    let mut found = false;
+    traverse(geometry, ray, |child, ray| {
+        intersect_leaf(geometry, child, ray, rules, &mut |_| found = true);
+        if found { f32::NEG_INFINITY } else { ray.t_max }
+    });
+    found
+}
+
+/// Reports every hit of a leaf between the ray's ends.
+pub fn intersect_leaf(geometry: &Geometry<'_>, leaf: ChildRef, ray: &Ray, rules: Rules, report: &mut impl FnMut(Hit)) {
+    match leaf {
+        ChildRef::Node(_) => {}
+        ChildRef::Triangles(i) => {
+            let limit = min_determinant(rules);
+            (0..LANES)
+                .filter_map(|lane| intersect_triangle(&geometry.triangles[i as usize], lane, ray, limit))
+                .for_each(report);
+        }
+        ChildRef::Sphere(i) => intersect_sphere(&geometry.spheres[i as usize], ray, rules).into_iter().for_each(report),
+        ChildRef::Square(i) => intersect_square(&geometry.squares[i as usize], ray).into_iter().for_each(report),
+    }
+}
+
+/// Visits the leaves whose boxes the ray crosses before the parameter that `visit` returned last.
+fn traverse(geometry: &Geometry<'_>, ray: &Ray, mut visit: impl FnMut(ChildRef, &Ray) -> f32) {
+    if geometry.nodes.is_empty() {
+        return;
+    }
+    let reciprocal = safe_reciprocal(ray.direction);
+    let mut limit = ray.t_max;
+    let mut stack = [(0_u32, 0.0_f32); STACK_SIZE];
+    let mut size = 1;
+    stack[0] = (ChildRef::Node(0).pack(), ray.t_min);
+    while size > 0 {
+        size -= 1;
+        let (child, entry) = stack[size];
+        if entry > limit {
+            continue;
+        }
+        let ChildRef::Node(index) = ChildRef::unpack(child) else {
+            limit = visit(ChildRef::unpack(child), ray);
+            continue;
+        };
+        let node = &geometry.nodes[index as usize];
+        for lane in 0..LANES {
+            if let Some(entry) = enter_box(node, lane, ray, reciprocal, limit) {
+                stack[size] = (node.child[lane], entry);
+                size += 1;
+            }
+        }
+    }
+}
+
+/// The parameter at which the ray enters a child's box, if it crosses the box between `ray.t_min` and `limit`.
+fn enter_box(node: &BvhNode, lane: usize, ray: &Ray, reciprocal: Vec3, limit: f32) -> Option<f32> {
+    let corner = |of: &[[f32; LANES]; 3]| (Vec3::new(of[0][lane], of[1][lane], of[2][lane]) - ray.origin) * reciprocal;
+    let (a, b) = (corner(&node.lower), corner(&node.upper));
+    let entry = a.min(b).max_element().max(ray.t_min);
+    let exit = a.max(b).min_element();
+    // Inverted boxes of empty children come out with lower > upper on every axis, and so with their ends swapped;
+    // they are told by their order.
+    (node.lower[0][lane] <= node.upper[0][lane] && entry <= exit * SLAB_SLACK && entry <= limit).then_some(entry)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn child_references_survive_packing() {
+        for child in [ChildRef::Node(0), ChildRef::Triangles(7), ChildRef::Sphere(1), ChildRef::Square((1 << 30) - 1)] {
+            assert_eq!(ChildRef::unpack(child.pack()), child);
+        }
+    }
+
+    #[test]
+    fn an_empty_geometry_is_never_hit() {
+        let geometry = Geometry { nodes: &[], triangles: &[], spheres: &[], squares: &[] };
+        let ray = Ray { origin: Vec3::ZERO, direction: Vec3::X, t_min: 0.0, t_max: 1.0, inside: false };
+        assert!(!closest_hit(&geometry, &ray, Rules::Repaired).is_some());
+        assert!(!any_hit(&geometry, &ray, Rules::Repaired));
+    }
+}

@@ -1,0 +1,107 @@
+//! From a hit to the surface there.
+
+use crate::intersect::{Sphere, Square};
+use crate::ray::{Hit, Ray, normalize};
+use crate::texture::{SurfacePoint, sphere_coordinates};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// [`Primitive::kind`] of a triangle.
+pub const TRIANGLE: u32 = 0;
+/// [`Primitive::kind`] of a sphere.
+pub const SPHERE: u32 = 1;
+/// [`Primitive::kind`] of a square.
+pub const SQUARE: u32 = 2;
+
+/// What a primitive number stands for. 16 bytes.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+pub struct Primitive {
+    /// [`TRIANGLE`], [`SPHERE`] or [`SQUARE`].
+    pub kind: u32,
+    /// Index into the slice of its kind in [`Surfaces`].
+    pub index: u32,
+    /// Number of its object, from 1 in file order.
+    pub object: u32,
+    /// Index of its material.
+    pub material: u32,
+}
+
+/// What a triangle's corners carry. 64 bytes.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct TriangleCorners {
+    /// Normals; all equal on a flat triangle.
+    pub normals: [Vec3; 3],
+    /// Texture coordinates.
+    pub texture_coordinates: [[f32; 2]; 3],
+    /// Unused; keeps the record a multiple of 16 bytes.
+    pub padding: f32,
+}
+
+/// All surfaces, as flat slices.
+#[derive(Debug, Clone, Copy)]
+pub struct Surfaces<'a> {
+    /// Primitives in file order.
+    pub primitives: &'a [Primitive],
+    /// Triangles in file order.
+    pub corners: &'a [TriangleCorners],
+    /// Spheres in file order.
+    pub spheres: &'a [Sphere],
+    /// Squares in file order.
+    pub squares: &'a [Square],
+}
+
+/// A point on a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surface {
+    /// Position in scene units.
+    pub point: Vec3,
+    /// Unit normal as the scene gives it, never turned towards the ray.
+    pub normal: Vec3,
+    /// Index of the material.
+    pub material: u32,
+    /// Number of the object, from 1.
+    pub object: u32,
+}
+
+/// The surface at a hit of this ray.
+pub fn surface_at(surfaces: &Surfaces<'_>, ray: &Ray, hit: &Hit) -> Surface {
+    let primitive = surfaces.primitives[hit.primitive as usize];
+    let point = ray.origin + ray.direction * hit.t;
+    let index = primitive.index as usize;
+    let normal = match primitive.kind {
+        TRIANGLE => {
+            let [a, b, c] = surfaces.corners[index].normals;
+            normalize(a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v)
+        }
+        SPHERE => normalize(point - surfaces.spheres[index].center),
+        _ => surfaces.squares[index].normal,
+    };
+    Surface { point, normal, material: primitive.material, object: primitive.object }
+}
+
+/// Where the hit lies for texturing.
+pub fn surface_point(surfaces: &Surfaces<'_>, hit: &Hit, surface: &Surface) -> SurfacePoint {
+    let primitive = surfaces.primitives[hit.primitive as usize];
+    let index = primitive.index as usize;
+    match primitive.kind {
+        TRIANGLE => {
+            let [a, b, c] = surfaces.corners[index].texture_coordinates;
+            let blend = |i: usize| a[i] * (1.0 - hit.u - hit.v) + b[i] * hit.u + c[i] * hit.v;
+            SurfacePoint { uv: [blend(0), blend(1)], size: [0.0; 2] }
+        }
+        SPHERE => {
+            let round = surfaces.spheres[index].radius * std::f32::consts::TAU;
+            SurfacePoint { uv: sphere_coordinates(surface.normal), size: [round, round / 2.0] }
+        }
+        _ => {
+            let square = &surfaces.squares[index];
+            let offset = surface.point - square.center;
+            let size = [2.0 * square.half_width, 2.0 * square.half_height];
+            // Seen against the normal with the head upwards, the width runs to the left along `across`.
+            let uv = [0.5 - offset.dot(square.across) / size[0], 0.5 + offset.dot(square.along) / size[1]];
+            SurfacePoint { uv, size }
+        }
+    }
+}

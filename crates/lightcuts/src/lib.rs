@@ -1,0 +1,58 @@
+//! Rendering with very many lights: global illumination from virtual point lights and lightcuts.
+//!
+//! This crate is the one door to the renderer's crates: everything that a program which embeds it needs, under one name.
+//!
+//! ```no_run
+//! use lightcuts::{ImportOptions, Options, Settings, Unwatched, World, image};
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let scene = lightcuts::load("scene.txt".as_ref(), &ImportOptions::default())?.scene;
+//!     let world = World::new(&scene)?;
+//!
+//!     // What the scene's author recommends, at another size.
+//!     let mut settings = Settings::for_scene(&scene);
+//!     (settings.image.width, settings.image.height) = (640, 480);
+//!
+//!     let rendering = lightcuts::render(&world, &settings, &Options::default(), &Unwatched)?;
+//!     image::write_exr("scene.exr", &rendering.layers())?;
+//!     println!("{} VPLs", rendering.vpls.len());
+//!     Ok(())
+//! }
+//! ```
+//!
+//! The stations of a picture, one way only: [`load`] makes a [`SceneDesc`] of files, [`World::new`] makes a flat
+//! [`World`] of it, [`render()`] makes a [`Rendering`] of the world and the [`Settings`], and [`image`] makes files of
+//! that. A [`Monitor`] is told how far it is and may stop it.
+
+pub use lightcuts_import::{ImportError, ImportOptions, Imported, load};
+pub use lightcuts_render::{
+    Monitor, Options, Rendering, Settings, SettingsError, Simd, Stage, Stats, Unwatched, VplCsvError, render,
+    vpls_from_csv, vpls_to_csv,
+};
+pub use lightcuts_scene::SceneDesc;
+pub use lightcuts_world::{World, WorldError};
+
+/// Pictures: layers, tone mapping, bloom, EXR and PNG files.
+pub mod image {
+    pub use lightcuts_image::*;
+}
+
+/// Importers: scene and model files to scene descriptions.
+pub mod import {
+    pub use lightcuts_import::*;
+}
+
+/// Scene descriptions: for scenes made in code, and to look into those that were read.
+pub mod scene {
+    pub use lightcuts_scene::*;
+}
+
+/// The tables of [`Settings`](crate::Settings) and what a render reports.
+pub mod rendering {
+    pub use lightcuts_render::*;
+}
+
+/// Flat, immutable worlds: what rendering reads.
+pub mod world {
+    pub use lightcuts_world::*;
+}

@@ -1,0 +1,36 @@
+//! The CPU device: traversal and gathering, with SIMD where the machine has it.
+//!
+//! The plain functions of `lightcuts-kernel` say what is meant; the AVX2 versions replace them bit for bit and are
+//! tested against them.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2_gather;
+#[cfg(target_arch = "x86_64")]
+mod avx2_packet;
+#[cfg(target_arch = "x86_64")]
+mod avx2_trace;
+mod gather;
+mod tracer;
+
+pub(crate) use gather::{Chosen, PacketStack, Receiver, evaluate, select, select_exhaustively};
+pub(crate) use tracer::Tracer;
+
+/// Whether SIMD instructions are used. Never changes the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Simd {
+    /// Where the machine has them.
+    #[default]
+    Auto,
+    /// Never: the plain functions only.
+    Off,
+}
+
+impl Simd {
+    /// Whether AVX2 is to be used on this machine.
+    pub(crate) fn has_avx2(self) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        return self == Self::Auto && std::arch::is_x86_feature_detected!("avx2");
+        #[cfg(not(target_arch = "x86_64"))]
+        false
+    }
+}

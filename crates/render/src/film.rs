@@ -1,0 +1,152 @@
+//! The film: weighted sums of samples, tile by tile.
+
+use crate::settings::Filter;
+use glam::{Vec3, Vec4, Vec4Swizzles};
+
+/// A rectangle of pixels; j counts from the bottom, as in the thesis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Tile {
+    pub(crate) i: u32,
+    pub(crate) j: u32,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+}
+
+impl Tile {
+    /// Tiles of at most `size` x `size` pixels that cover a picture, bottom row first.
+    pub(crate) fn cover(width: u32, height: u32, size: u32) -> Vec<Self> {
+        let starts = |length: u32| (0..length).step_by(size as usize);
+        starts(height)
+            .flat_map(|j| starts(width).map(move |i| (i, j)))
+            .map(|(i, j)| Self { i, j, width: size.min(width - i), height: size.min(height - j) })
+            .collect()
+    }
+
+    /// Its pixels, bottom row first.
+    pub(crate) fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        let Self { i, j, width, height } = *self;
+        (j..j + height).flat_map(move |j| (i..i + width).map(move |i| (i, j)))
+    }
+}
+
+/// Weighted sums (rgb, weight) of a rectangle of pixels.
+#[derive(Debug, Clone)]
+pub(crate) struct Film {
+    /// First column and row; negative in a tile's border.
+    left: i64,
+    bottom: i64,
+    width: usize,
+    height: usize,
+    sums: Vec<Vec4>,
+}
+
+impl Film {
+    /// An empty film for a whole picture.
+    pub(crate) fn new(width: u32, height: u32) -> Self {
+        Self::window(0, 0, width as usize, height as usize)
+    }
+
+    /// An empty film for a tile and the pixels around it that its samples reach.
+    pub(crate) fn around(tile: &Tile, filter: &Filter) -> Self {
+        let border = (filter.resolved_radius() + 0.5).ceil() as usize - 1;
+        let offset = border as i64;
+        Self::window(
+            i64::from(tile.i) - offset,
+            i64::from(tile.j) - offset,
+            tile.width as usize + 2 * border,
+            tile.height as usize + 2 * border,
+        )
+    }
+
+    fn window(left: i64, bottom: i64, width: usize, height: usize) -> Self {
+        Self { left, bottom, width, height, sums: vec![Vec4::ZERO; width * height] }
+    }
+
+    /// Adds a sample that lies `shift` pixels from the centre of pixel (i, j).
+    pub(crate) fn add(&mut self, filter: &Filter, i: u32, j: u32, shift: [f32; 2], color: Vec3) {
+        let reach = (filter.resolved_radius() + 0.5).ceil() as i64 - 1;
+        for y in -reach..=reach {
+            for x in -reach..=reach {
+                let weight = filter.weight(shift[0] - x as f32, shift[1] - y as f32);
+                if weight != 0.0 {
+                    let column = (i64::from(i) + x - self.left) as usize;
+                    let row = (i64::from(j) + y - self.bottom) as usize;
+                    self.sums[row * self.width + column] += (color * weight).extend(weight);
+                }
+            }
+        }
+    }
+
+    /// Adds a tile's film; what lies outside is dropped.
+    pub(crate) fn merge(&mut self, tile: &Self) {
+        for row in 0..tile.height {
+            let j = tile.bottom + row as i64 - self.bottom;
+            if !(0..self.height as i64).contains(&j) {
+                continue;
+            }
+            for column in 0..tile.width {
+                let i = tile.left + column as i64 - self.left;
+                if (0..self.width as i64).contains(&i) {
+                    self.sums[j as usize * self.width + i as usize] += tile.sums[row * tile.width + column];
+                }
+            }
+        }
+    }
+
+    /// The colour of a pixel: weighted mean, at most 1; black where no sample fell.
+    pub(crate) fn color(&self, i: usize, j: usize) -> Vec3 {
+        let sum = self.sums[j * self.width + i];
+        if sum.w == 0.0 { Vec3::ZERO } else { (sum.xyz() / sum.w).min(Vec3::ONE) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::FilterKind;
+
+    #[test]
+    fn tiles_cover_every_pixel_once() {
+        let tiles = Tile::cover(37, 19, 16);
+        let mut pixels: Vec<(u32, u32)> = tiles.iter().flat_map(Tile::pixels).collect();
+        pixels.sort_unstable();
+        pixels.dedup();
+        assert_eq!(pixels.len(), 37 * 19);
+    }
+
+    #[test]
+    fn tiled_and_whole_films_agree_for_every_filter() {
+        for kind in [FilterKind::Box, FilterKind::Triangle, FilterKind::Gaussian, FilterKind::Mitchell] {
+            let filter = Filter { kind, ..Filter::default() };
+            let sample =
+                |i: u32, j: u32| (Vec3::new(i as f32 * 0.01, j as f32 * 0.02, 0.5), [0.3 - 0.04 * j as f32, -0.2]);
+            let mut merged = Film::new(9, 7);
+            for tile in Tile::cover(9, 7, 4) {
+                let mut film = Film::around(&tile, &filter);
+                tile.pixels().for_each(|(i, j)| film.add(&filter, i, j, sample(i, j).1, sample(i, j).0));
+                merged.merge(&film);
+            }
+            let whole_tile = Tile { i: 0, j: 0, width: 9, height: 7 };
+            let mut whole = Film::around(&whole_tile, &filter);
+            whole_tile.pixels().for_each(|(i, j)| whole.add(&filter, i, j, sample(i, j).1, sample(i, j).0));
+            let mut expected = Film::new(9, 7);
+            expected.merge(&whole);
+            for j in 0..7 {
+                for i in 0..9 {
+                    assert!((merged.color(i, j) - expected.color(i, j)).length() < 1e-5, "{kind:?} {i} {j}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_constant_picture_stays_constant() {
+        let filter = Filter { kind: FilterKind::Mitchell, ..Filter::default() };
+        let tile = Tile { i: 0, j: 0, width: 5, height: 5 };
+        let mut film = Film::around(&tile, &filter);
+        tile.pixels().for_each(|(i, j)| film.add(&filter, i, j, [0.1, -0.3], Vec3::splat(0.25)));
+        let mut picture = Film::new(5, 5);
+        picture.merge(&film);
+        assert!((picture.color(0, 4) - 0.25).abs().max_element() < 1e-5);
+    }
+}

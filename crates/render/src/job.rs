@@ -1,0 +1,364 @@
+//! A render from its first pass to the finished picture: the walk through the stations.
+
+use crate::cpu::{Chosen, Tracer};
+use crate::film::Tile;
+use crate::light_tree::LightTree;
+use crate::monitor::{Monitor, Stage};
+use crate::occlusion::Occlusion;
+use crate::original::OriginalDraws;
+use crate::pass::{Pass, Placement, Shifts, View, Wants};
+use crate::photon_map::PhotonMap;
+use crate::rendering::{Canvas, Rendering};
+use crate::sampler::Sampler;
+use crate::settings::{Settings, Strategy};
+use crate::shade::{Lighting, VplLighting};
+use crate::stats::{Stats, timed};
+use crate::{Options, Vpl};
+use lightcuts_kernel::Rules;
+use lightcuts_kernel::rng::stream;
+use lightcuts_world::World;
+
+/// Edge of a tile in pixels.
+const TILE_SIZE: u32 = 16;
+
+/// Purposes of random numbers; each has its own stream.
+const SHIFTS: u32 = 1;
+const PLACEMENT: u32 = 2;
+const OCCLUSION: u32 = 3;
+
+/// A render on its way.
+pub(crate) struct Job<'a> {
+    settings: &'a Settings,
+    view: View<'a>,
+    given_vpls: Option<&'a [Vpl]>,
+    monitor: &'a dyn Monitor,
+    canvas: Canvas,
+    stats: Stats,
+    /// The original's random numbers, where they are to be reproduced.
+    draws: Option<OriginalDraws>,
+    cancelled: bool,
+}
+
+impl<'a> Job<'a> {
+    pub(crate) fn new(
+        world: &'a World,
+        settings: &'a Settings,
+        options: &'a Options,
+        monitor: &'a dyn Monitor,
+    ) -> Self {
+        let rules = if settings.run.reproduce { Rules::Original } else { Rules::Repaired };
+        let size = settings.image;
+        let view = View {
+            world,
+            camera: world.camera(size.width, size.height),
+            tracer: Tracer::new(world.geometry(), rules, options.simd),
+            filter: &settings.filter,
+            max_depth: settings.run.max_depth,
+        };
+        Self {
+            settings,
+            view,
+            given_vpls: options.vpls.as_deref(),
+            monitor,
+            canvas: Canvas::new(size.width, size.height),
+            stats: Stats::default(),
+            draws: settings.run.reproduce.then(OriginalDraws::new),
+            cancelled: false,
+        }
+    }
+
+    /// Walks through the stations; after a cancelled one only the last.
+    pub(crate) fn run(mut self) -> Rendering {
+        let placed = self.timed(Stage::FirstPass, |job| match job.draws {
+            Some(draws) => job.first_pass_original(draws),
+            None => job.first_pass(),
+        });
+        let vpls = self.given_vpls.map_or(placed, <[Vpl]>::to_vec);
+        self.stats.vpl_count = vpls.len() as u64;
+        let photons = self.shoot_photons();
+        if self.settings.vpl.enabled && !self.cancelled && (!vpls.is_empty() || photons.is_some()) {
+            let tree = self.timed(Stage::LightTree, |job| {
+                job.skip_tree_draws(vpls.len());
+                LightTree::build(&vpls)
+            });
+            self.timed(Stage::SecondPass, |job| job.second_pass(&tree, photons.as_ref()));
+        }
+        self.finish(vpls)
+    }
+
+    fn finish(self, vpls: Vec<Vpl>) -> Rendering {
+        let Self { settings, canvas, mut stats, cancelled, monitor, .. } = self;
+        monitor.begin(Stage::Develop, 1);
+        let mut passes = std::mem::take(&mut stats.passes);
+        let mut rendering = timed(&mut passes, Stage::Develop, || canvas.develop(&settings.bloom, vpls, stats));
+        monitor.end();
+        let stats = &mut rendering.stats;
+        stats.total_wall_s = passes.iter().map(|p| p.wall_s).sum();
+        stats.total_cpu_s = passes.iter().map(|p| p.cpu_s).sum();
+        stats.passes = passes;
+        stats.complete = !cancelled;
+        let tree = &mut stats.tree;
+        tree.visits_per_hit = (tree.nodes + tree.lights) as f64 / tree.shaded_hits.max(1) as f64;
+        rendering
+    }
+
+    /// Runs a stage, recording its time.
+    fn timed<T>(&mut self, stage: Stage, work: impl FnOnce(&mut Self) -> T) -> T {
+        let mut passes = std::mem::take(&mut self.stats.passes);
+        let result = timed(&mut passes, stage, || work(self));
+        self.stats.passes = passes;
+        result
+    }
+
+    /// Station 3: the picture of the scene's own lights; hits become VPLs.
+    fn first_pass(&mut self) -> Vec<Vpl> {
+        let settings = self.settings;
+        let occlusion = self.occlusion();
+        let lighting = Lighting::Scene { occlusion: occlusion.as_ref() };
+        let wanted = settings.vpl.enabled && self.given_vpls.is_none();
+        let placement = wanted
+            .then(|| Placement::new(&settings.vpl, settings.sampling.samples, stream(settings.run.seed, PLACEMENT)));
+        let sampler = self.sampler(0, settings.sampling.samples);
+        let mut vpls = Vec::new();
+        let pass = self.pass(lighting, Shifts::Sampler(&sampler), Wants::SurfacesAndVpls(placement.as_ref()));
+        self.run_pass(Stage::FirstPass, &pass, |canvas, result| {
+            canvas.first.merge(&result.film);
+            vpls.extend(result.vpls);
+        });
+        self.refine(Stage::FirstPass, lighting);
+        vpls
+    }
+
+    /// The first pass with the original's draws: rows one after the other, because each row's shifts depend on the
+    /// number of hits before it.
+    fn first_pass_original(&mut self, mut draws: OriginalDraws) -> Vec<Vpl> {
+        let settings = self.settings;
+        let placement = Placement::new(&settings.vpl, 1, 0);
+        let occlusion = self.occlusion();
+        let (width, height) = (self.view.camera.width, self.view.camera.height);
+        let mut shifts = vec![[0.0; 2]; (width * height) as usize];
+        let mut vpls = Vec::new();
+        self.monitor.begin(Stage::FirstPass, u64::from(height * width.div_ceil(TILE_SIZE)));
+        for j in 0..height {
+            let start = (j * width) as usize;
+            shifts[start..start + width as usize].copy_from_slice(&draws.row(width));
+            let tiles: Vec<Tile> = (0..width)
+                .step_by(TILE_SIZE as usize)
+                .map(|i| Tile { i, j, width: TILE_SIZE.min(width - i), height: 1 })
+                .collect();
+            let lighting = Lighting::Scene { occlusion: occlusion.as_ref() };
+            let pass = self.pass(lighting, Shifts::Given(&shifts), Wants::SurfacesAndHits);
+            let complete = self.merge_tiles(&pass, &tiles, |canvas, result| {
+                canvas.first.merge(&result.film);
+                let accepted = result.hits.iter().filter(|_| draws.accepts(settings.vpl.probability));
+                vpls.extend(accepted.filter_map(|hit| placement.vpl(hit)));
+            });
+            if !complete {
+                break;
+            }
+        }
+        self.monitor.end();
+        self.draws = Some(draws);
+        vpls
+    }
+
+    /// The draws that the original spends on its light tree.
+    fn skip_tree_draws(&mut self, vpls: usize) {
+        if let Some(draws) = &mut self.draws
+            && self.settings.gather.strategy != Strategy::All
+        {
+            draws.skip_light_tree(vpls);
+        }
+    }
+
+    fn shoot_photons(&mut self) -> Option<PhotonMap> {
+        let settings = self.settings;
+        if !settings.caustics.enabled || self.cancelled {
+            return None;
+        }
+        self.timed(Stage::Photons, |job| {
+            job.monitor.begin(Stage::Photons, 1);
+            let (view, rays) = (&job.view, &mut job.stats.rays);
+            let map = PhotonMap::shoot(view.world, &view.tracer, &settings.caustics, settings.run.max_depth, rays);
+            job.stats.photons_stored = map.len() as u64;
+            job.monitor.end();
+            Some(map)
+        })
+    }
+
+    /// Station 5: light of the VPLs.
+    fn second_pass(&mut self, tree: &LightTree, photons: Option<&PhotonMap>) {
+        let settings = self.settings;
+        let all: Vec<Chosen> =
+            (0..tree.blocks.len() as u32).map(|block| Chosen { block, lanes: tree.lanes(block) }).collect();
+        let lighting = Lighting::Vpls(VplLighting {
+            tree,
+            strategy: settings.gather.strategy,
+            all: &all,
+            threshold: settings.gather.threshold,
+            photons,
+        });
+        let mut ratio = LightRatio::new(tree.vpl_count(), self.draws.is_some());
+        let mut merge = |canvas: &mut Canvas, result: crate::pass::TileResult| {
+            canvas.second.merge(&result.film);
+            ratio.add(&result.selections);
+        };
+        if let Some(draws) = &mut self.draws {
+            let (width, height) = (self.view.camera.width, self.view.camera.height);
+            let shifts: Vec<[f32; 2]> = (0..height).flat_map(|_| draws.row(width)).collect();
+            let pass = self.pass(lighting, Shifts::Given(&shifts), Wants::Selections);
+            self.run_pass(Stage::SecondPass, &pass, merge);
+        } else {
+            let sampler = self.sampler(0, settings.sampling.samples);
+            let pass = self.pass(lighting, Shifts::Sampler(&sampler), Wants::Selections);
+            self.run_pass(Stage::SecondPass, &pass, &mut merge);
+            self.refine(Stage::SecondPass, lighting);
+        }
+        self.stats.light_ratio_percent = ratio.percent();
+    }
+
+    /// Adaptive anti-aliasing: more samples where neighbouring pixels of this pass differ.
+    fn refine(&mut self, stage: Stage, lighting: Lighting<'_>) {
+        let extra = self.settings.adaptive_extra();
+        if extra == 0 || self.cancelled {
+            return;
+        }
+        let film = if stage == Stage::FirstPass { &self.canvas.first } else { &self.canvas.second };
+        let mask = self.canvas.edges(film, self.settings.sampling.adaptive_threshold);
+        self.stats.adaptive_pixels += mask.iter().filter(|&&m| m).count() as u64;
+        let first_sample = self.settings.sampling.samples;
+        let sampler = self.sampler(first_sample, extra);
+        let pass =
+            Pass { first_sample, mask: Some(&mask), ..self.pass(lighting, Shifts::Sampler(&sampler), Wants::Colors) };
+        self.run_pass(stage, &pass, |canvas, result| {
+            let film = if stage == Stage::FirstPass { &mut canvas.first } else { &mut canvas.second };
+            film.merge(&result.film);
+        });
+    }
+
+    fn occlusion(&self) -> Option<Occlusion> {
+        let settings = &self.settings.ambient_occlusion;
+        settings.enabled.then(|| Occlusion::new(settings, stream(self.settings.run.seed, OCCLUSION)))
+    }
+
+    fn sampler(&self, first: u32, count: u32) -> Sampler {
+        Sampler::new(self.settings.sampling.sampler, stream(self.settings.run.seed, SHIFTS), first, count)
+    }
+
+    fn pass<'p>(&self, lighting: Lighting<'p>, shifts: Shifts<'p>, wants: Wants<'p>) -> Pass<'p>
+    where
+        'a: 'p,
+    {
+        Pass { view: self.view, lighting, shifts, first_sample: 0, mask: None, wants }
+    }
+
+    /// Runs a pass over the whole picture as a stage of its own.
+    fn run_pass(&mut self, stage: Stage, pass: &Pass<'_>, merge: impl FnMut(&mut Canvas, crate::pass::TileResult)) {
+        let tiles = self.tiles();
+        self.monitor.begin(stage, tiles.len() as u64);
+        self.merge_tiles(pass, &tiles, merge);
+        self.monitor.end();
+    }
+
+    /// With the original's draws, tiles are rows, so that its running sums come in its order.
+    fn tiles(&self) -> Vec<Tile> {
+        let (width, height) = (self.view.camera.width, self.view.camera.height);
+        if self.draws.is_some() {
+            (0..height).map(|j| Tile { i: 0, j, width, height: 1 }).collect()
+        } else {
+            Tile::cover(width, height, TILE_SIZE)
+        }
+    }
+
+    fn merge_tiles(
+        &mut self,
+        pass: &Pass<'_>,
+        tiles: &[Tile],
+        mut merge: impl FnMut(&mut Canvas, crate::pass::TileResult),
+    ) -> bool {
+        let (canvas, stats) = (&mut self.canvas, &mut self.stats);
+        let complete = pass.run(tiles, self.monitor, |result| {
+            canvas.see(&result);
+            stats.rays.add(&result.rays);
+            stats.tree.add(&result.visits);
+            merge(canvas, result);
+        });
+        self.cancelled |= !complete;
+        complete
+    }
+}
+
+/// The mean share of the VPLs that lit a shaded hit.
+struct LightRatio {
+    vpls: usize,
+    /// The original adds up float32 shares hit by hit, which loses some of the sum.
+    original_sum: Option<f32>,
+    selected: u64,
+    hits: u64,
+}
+
+impl LightRatio {
+    fn new(vpls: usize, original: bool) -> Self {
+        Self { vpls, original_sum: original.then_some(0.0), selected: 0, hits: 0 }
+    }
+
+    fn add(&mut self, selections: &[u32]) {
+        if let Some(sum) = &mut self.original_sum {
+            for &selected in selections {
+                *sum += selected as f32 / self.vpls as f32;
+            }
+        }
+        self.selected += selections.iter().map(|&n| u64::from(n)).sum::<u64>();
+        self.hits += selections.len() as u64;
+    }
+
+    fn percent(&self) -> f64 {
+        match self.original_sum {
+            _ if self.hits == 0 || self.vpls == 0 => 0.0,
+            Some(sum) => f64::from(sum / self.hits as f32) * 100.0,
+            None => self.selected as f64 / (self.hits as f64 * self.vpls as f64) * 100.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Unwatched;
+    use crate::cpu::{select, select_exhaustively};
+    use lightcuts_import::{ImportOptions, load};
+    use lightcuts_testkit::{project_root, shared};
+
+    /// Every hit of every ray tree of the thesis' scenes: the bounded tree finds the set that testing every VPL finds.
+    #[test]
+    fn the_selected_set_is_exact_at_every_hit_of_the_three_scenes() {
+        let Some(models) = shared("models") else { return };
+        for name in ["simple", "venus", "galleon"] {
+            let options = ImportOptions { search_paths: vec![models.clone()], ..ImportOptions::default() };
+            let path = project_root().join(format!("scenes/thesis/{name}.txt"));
+            let scene = load(&path, &options).expect("the scene loads").scene;
+            let world = World::new(&scene).expect("the scene is sound");
+            let mut settings = Settings::for_scene(&scene);
+            settings.run.reproduce = true;
+            let options = Options::default();
+            let mut job = Job::new(&world, &settings, &options, &Unwatched);
+            let vpls = job.first_pass_original(OriginalDraws::new());
+            let tree = LightTree::build(&vpls);
+            let mut draws = job.draws.expect("the job reproduces");
+            draws.skip_light_tree(vpls.len());
+            let shifts: Vec<[f32; 2]> = (0..512).flat_map(|_| draws.row(512)).collect();
+            let pass = job.pass(Lighting::Scene { occlusion: None }, Shifts::Given(&shifts), Wants::SurfacesAndHits);
+            let mut hits = Vec::new();
+            pass.run(&job.tiles(), &Unwatched, |result| hits.extend(result.hits));
+            let (mut found, mut expected) = (Vec::new(), Vec::new());
+            for hit in &hits {
+                found.clear();
+                expected.clear();
+                select(&tree, pass.view.tracer.avx2, hit.surface.point, settings.gather.threshold, &mut found);
+                select_exhaustively(&tree, hit.surface.point, settings.gather.threshold, &mut expected);
+                assert_eq!(found, expected, "{name} at {}", hit.surface.point);
+            }
+            println!("{name}: the sets of all {} hits are equal", hits.len());
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! The stations of the renderer: place VPLs, build the light tree, gather, develop.
+//!
+//! [`render`] takes a [`World`] and [`Settings`] and returns a [`Rendering`]. The same settings give the same picture bit
+//! for bit on any number of threads, with or without SIMD.
+
+mod cpu;
+mod film;
+mod filter;
+mod job;
+mod light_tree;
+mod monitor;
+mod occlusion;
+mod original;
+mod pass;
+mod photon_map;
+mod ray_tree;
+mod rendering;
+mod sampler;
+mod settings;
+mod shade;
+mod stats;
+mod vpl_csv;
+
+pub use cpu::Simd;
+pub use lightcuts_kernel::light::Vpl;
+pub use monitor::{Monitor, Stage, Unwatched};
+pub use rendering::Rendering;
+pub use settings::{
+    AmbientOcclusion, Bloom, Caustics, Display, Filter, FilterKind, Gather, ImageSize, Model, Run, Sampling, Settings,
+    SettingsError, Strategy, ToneMappingKind, VplPlacement,
+};
+pub use stats::{PassTime, Rays, Stats, TreeVisits};
+pub use vpl_csv::{VplCsvError, vpls_from_csv, vpls_to_csv};
+
+use lightcuts_world::World;
+
+/// What a render is given besides its settings; none of it changes what the settings mean.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// VPLs to use instead of placing some.
+    pub vpls: Option<Vec<Vpl>>,
+    /// Whether SIMD instructions are used.
+    pub simd: Simd,
+}
+
+/// Renders a world on the threads of the current rayon pool. Fails only if a parameter is out of range. A monitor that
+/// cancels gets what there is, with `stats.complete` false.
+pub fn render(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    monitor: &dyn Monitor,
+) -> Result<Rendering, SettingsError> {
+    settings.validate()?;
+    Ok(job::Job::new(world, settings, options, monitor).run())
+}

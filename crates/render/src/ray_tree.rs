@@ -1,0 +1,169 @@
+//! The ray tree of a camera ray, in an array: slot k's mirrored ray is in slot 2k + 1, its refracted ray in 2k + 2
+//! (thesis, section 4.4). Traced layer by layer, summed from the leaves; no recursion.
+
+use crate::shade::{Found, Shader};
+use glam::Vec3;
+use lightcuts_kernel::optics::{reflect, refract};
+use lightcuts_kernel::ray::Ray;
+use lightcuts_kernel::surface::Surface;
+
+/// A ray and what it found.
+#[derive(Debug, Clone, Copy)]
+struct Slot {
+    ray: Ray,
+    color: Vec3,
+    /// What it hit, if anything.
+    found: Option<Found>,
+    /// Factors on the children's colours; 0 where there is no child.
+    reflection: f32,
+    refraction: f32,
+}
+
+/// A hit of a ray tree: a place where a VPL may be put.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TreeHit {
+    pub(crate) slot: u32,
+    pub(crate) surface: Surface,
+    /// The ray's final colour.
+    pub(crate) color: Vec3,
+    /// Distance that separates rays and VPLs from this surface.
+    pub(crate) epsilon: f32,
+}
+
+/// The array, reused from ray to ray.
+#[derive(Debug)]
+pub(crate) struct RayTree {
+    max_depth: u32,
+    slots: Vec<Option<Slot>>,
+    /// Slots in use, parents before children.
+    active: Vec<u32>,
+    /// Place of each slot when subtrees come before their root, mirrored before refracted.
+    rank: Vec<u32>,
+}
+
+impl RayTree {
+    pub(crate) fn new(max_depth: u32) -> Self {
+        let size = (1_usize << max_depth) - 1;
+        Self { max_depth, slots: vec![None; size], active: Vec::new(), rank: post_order(size) }
+    }
+
+    /// Traces a camera ray with everything that follows from it and returns its colour.
+    pub(crate) fn trace(&mut self, shader: &mut Shader<'_>, camera_ray: Ray) -> Vec3 {
+        self.active.clear();
+        self.active.push(0);
+        self.slots[0] = Some(self.visit(shader, 0, camera_ray));
+        let mut next = 0;
+        while let Some(&k) = self.active.get(next) {
+            next += 1;
+            self.spawn(shader, k);
+        }
+        self.sum();
+        self.slots[0].map_or(Vec3::ZERO, |root| root.color)
+    }
+
+    /// Finds what a ray hits and its local colour.
+    fn visit(&self, shader: &mut Shader<'_>, k: u32, ray: Ray) -> Slot {
+        let mut slot = Slot { ray, color: shader.background(), found: None, reflection: 0.0, refraction: 0.0 };
+        if let Some(found) = shader.find(&ray, k > 0) {
+            slot.color = shader.local(k, &ray, &found);
+            slot.found = Some(found);
+            // A slot of the deepest layer has no children.
+            if k < (1 << (self.max_depth - 1)) - 1 {
+                (slot.reflection, slot.refraction) = (found.material.reflection, found.material.refraction);
+            }
+        }
+        slot
+    }
+
+    /// Traces the children of a slot.
+    fn spawn(&mut self, shader: &mut Shader<'_>, k: u32) {
+        let Some(Slot { ray, found: Some(found), reflection, refraction, .. }) = self.slots[k as usize] else { return };
+        let Found { surface, material, epsilon, .. } = found;
+        let child = |direction: Vec3, inside: bool| Ray {
+            origin: surface.point,
+            direction,
+            t_min: epsilon,
+            t_max: f32::INFINITY,
+            inside,
+        };
+        if reflection > 0.0 {
+            let mirrored = child(reflect(ray.direction, surface.normal), ray.inside);
+            self.slots[2 * k as usize + 1] = Some(self.visit(shader, 2 * k + 1, mirrored));
+            self.active.push(2 * k + 1);
+        }
+        let bent = (refraction > 0.0)
+            .then(|| refract(ray.direction, surface.normal, material.refraction_ratio, shader.rules()))
+            .flatten();
+        if let Some(direction) = bent {
+            let refracted = child(direction, !ray.inside);
+            self.slots[2 * k as usize + 2] = Some(self.visit(shader, 2 * k + 2, refracted));
+            self.active.push(2 * k + 2);
+        } else if let Some(slot) = &mut self.slots[k as usize] {
+            slot.refraction = 0.0;
+        }
+    }
+
+    /// Adds the children's colours to their parents', from the deepest up; each ray's colour is at most 1.
+    fn sum(&mut self) {
+        for &k in self.active.iter().rev() {
+            let Some(mut slot) = self.slots[k as usize] else { continue };
+            for (factor, child) in [(slot.reflection, 2 * k + 1), (slot.refraction, 2 * k + 2)] {
+                if factor > 0.0
+                    && let Some(child) = self.slots[child as usize]
+                {
+                    slot.color += child.color * factor;
+                }
+            }
+            if slot.found.is_some() {
+                slot.color = slot.color.min(Vec3::ONE);
+            }
+            self.slots[k as usize] = Some(slot);
+        }
+    }
+
+    /// The hits of the last tree in the original's order: a node's mirrored subtree, its refracted subtree, itself.
+    pub(crate) fn hits(&mut self, hits: &mut Vec<TreeHit>) {
+        hits.clear();
+        self.active.sort_unstable_by_key(|&k| self.rank[k as usize]);
+        for &k in &self.active {
+            if let Some(Slot { found: Some(Found { surface, epsilon, .. }), color, .. }) = self.slots[k as usize] {
+                hits.push(TreeHit { slot: k, surface, color, epsilon });
+            }
+        }
+    }
+
+    /// What the camera ray of the last tree hit, at which distance.
+    pub(crate) fn first_found(&self) -> Option<Found> {
+        self.slots[0].and_then(|slot| slot.found)
+    }
+}
+
+/// Place of each slot of a full tree in post-order.
+fn post_order(size: usize) -> Vec<u32> {
+    let mut rank = vec![0; size];
+    let mut reverse = Vec::with_capacity(size);
+    // Root, right, left is post-order backwards.
+    let mut open = vec![0];
+    while let Some(k) = open.pop() {
+        reverse.push(k);
+        if 2 * k + 2 < size {
+            open.extend([2 * k + 1, 2 * k + 2]);
+        }
+    }
+    for (place, &k) in reverse.iter().rev().enumerate() {
+        rank[k] = place as u32;
+    }
+    rank
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subtrees_come_before_their_roots() {
+        // Slots in post-order: 3 4 1 5 6 2 0.
+        assert_eq!(post_order(7), [6, 2, 5, 0, 1, 3, 4]);
+        assert_eq!(post_order(1), [0]);
+    }
+}

@@ -1,0 +1,76 @@
+//! The range of every parameter, checked once, so that rendering cannot fail.
+
+use super::{ImageSize, Settings};
+use lightcuts_image::MAX_PIXELS;
+
+/// A parameter out of its range.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{name} is {value}; expected {expected}")]
+pub struct SettingsError {
+    /// `table.key` as in a job file.
+    pub name: &'static str,
+    /// The value.
+    pub value: String,
+    /// What was expected.
+    pub expected: String,
+}
+
+impl Settings {
+    /// Checks every parameter's range, so that rendering cannot fail; the first fault found is returned.
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        let pixels = u64::from(self.image.width) * u64::from(self.image.height);
+        ensure("image.width", self.image.width, (1..=65_536).contains(&self.image.width), "1 to 65536")?;
+        ensure("image.height", self.image.height, (1..=65_536).contains(&self.image.height), "1 to 65536")?;
+        ensure("image.width", self.image.width, pixels <= MAX_PIXELS as u64, "fewer than 2^28 pixels in all")?;
+        ensure("run.max-depth", self.run.max_depth, (1..=12).contains(&self.run.max_depth), "1 to 12")?;
+        let plain = self.image == ImageSize::default() && self.sampling.samples == 1 && self.adaptive_extra() == 0;
+        ensure("run.reproduce", true, !self.run.reproduce || plain, "512 x 512 pixels of one sample with it")?;
+        self.validate_sampling()?;
+        number("vpl.probability", self.vpl.probability, 0.0, 1.0)?;
+        number("vpl.min-illumination", self.vpl.min_illumination, 0.0, 3.0)?;
+        number("vpl.attenuation", self.vpl.attenuation, 0.0, 1e6)?;
+        number("gather.threshold", self.gather.threshold, 0.0, f32::MAX)?;
+        self.validate_effects()
+    }
+
+    fn validate_sampling(&self) -> Result<(), SettingsError> {
+        let sampling = &self.sampling;
+        ensure("sampling.samples", sampling.samples, (1..=4096).contains(&sampling.samples), "1 to 4096")?;
+        let adaptive = sampling.adaptive_samples;
+        ensure("sampling.adaptive-samples", adaptive, adaptive <= 4096, "0 to 4096")?;
+        number("sampling.adaptive-threshold", sampling.adaptive_threshold, 0.0, 1e6)?;
+        number("filter.radius", self.filter.resolved_radius(), 0.5, 16.0)?;
+        number("filter.alpha", self.filter.alpha, 0.0, 1e3)?;
+        number("filter.mitchell-b", self.filter.mitchell_b, -10.0, 10.0)?;
+        number("filter.mitchell-c", self.filter.mitchell_c, -10.0, 10.0)
+    }
+
+    fn validate_effects(&self) -> Result<(), SettingsError> {
+        let occlusion = &self.ambient_occlusion;
+        number("ambient-occlusion.angle", occlusion.angle, 0.0, 90.0)?;
+        number("ambient-occlusion.step", occlusion.step, 0.1, 180.0)?;
+        number("ambient-occlusion.range", occlusion.range, f32::MIN_POSITIVE, 1e9)?;
+        number("ambient-occlusion.factor", occlusion.factor, 0.0, 1e6)?;
+        let caustics = &self.caustics;
+        number("caustics.step", caustics.step, 1e-9, 1e9)?;
+        number("caustics.radius", caustics.radius, 1e-9, 1e9)?;
+        number("caustics.min-reflection", caustics.min_reflection, 0.0, 1e6)?;
+        number("caustics.min-refraction", caustics.min_refraction, 0.0, 1e6)?;
+        number("caustics.min-diffuse", caustics.min_diffuse, 0.0, 1e6)?;
+        number("bloom.radius", self.bloom.radius, 0.0, 1024.0)?;
+        number("bloom.weight", self.bloom.weight, 0.0, 1.0)?;
+        self.display.operator().validate().map_err(|error| SettingsError {
+            name: "display",
+            value: error.to_string(),
+            expected: "parameters in range".to_owned(),
+        })
+    }
+}
+
+fn ensure(name: &'static str, value: impl std::fmt::Display, holds: bool, expected: &str) -> Result<(), SettingsError> {
+    if holds { Ok(()) } else { Err(SettingsError { name, value: value.to_string(), expected: expected.to_owned() }) }
+}
+
+fn number(name: &'static str, value: f32, least: f32, most: f32) -> Result<(), SettingsError> {
+    ensure(name, value, (least..=most).contains(&value), &format!("a number from {least} to {most:e}"))
+}

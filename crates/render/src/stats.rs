@@ -1,0 +1,104 @@
+//! What a render counted and how long it took.
+
+use crate::monitor::Stage;
+use cpu_time::ProcessTime;
+use serde::Serialize;
+use std::time::Instant;
+
+/// Statistics of a render; serialised, the body of a `--stats` file.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Stats {
+    /// Number of VPLs.
+    pub vpl_count: u64,
+    /// Mean share of the VPLs that lit a shaded hit of the second pass, in percent. With `reproduce` a float32 running
+    /// sum, as in the original.
+    pub light_ratio_percent: f64,
+    /// Stages in order.
+    pub passes: Vec<PassTime>,
+    /// Sum of the passes' elapsed times, in seconds.
+    pub total_wall_s: f64,
+    /// Sum of the passes' processor times over all threads, in seconds.
+    pub total_cpu_s: f64,
+    /// Rays by kind.
+    pub rays: Rays,
+    /// Work of choosing VPLs.
+    pub tree: TreeVisits,
+    /// Photons stored for caustics.
+    pub photons_stored: u64,
+    /// Pixels that got adaptive samples in either pass.
+    pub adaptive_pixels: u64,
+    /// Whether the render ran to its end.
+    pub complete: bool,
+}
+
+/// Time of one stage.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PassTime {
+    /// [`Stage::name`].
+    pub name: &'static str,
+    /// Elapsed time in seconds.
+    pub wall_s: f64,
+    /// Processor time over all threads, in seconds.
+    pub cpu_s: f64,
+}
+
+/// Rays by kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Rays {
+    /// From the camera, in both passes.
+    pub primary: u64,
+    /// Mirrored and refracted.
+    pub secondary: u64,
+    /// To lights and VPLs.
+    pub shadow: u64,
+    /// Of ambient occlusion.
+    pub occlusion: u64,
+    /// Of photons.
+    pub photon: u64,
+}
+
+/// Work of choosing VPLs in the second pass.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct TreeVisits {
+    /// Hits that VPLs were chosen for.
+    pub shaded_hits: u64,
+    /// Clusters whose bounds were computed.
+    pub nodes: u64,
+    /// VPLs whose relevance was computed.
+    pub lights: u64,
+    /// VPLs chosen.
+    pub selected: u64,
+    /// Clusters and VPLs visited per hit; testing every light would visit `vpl_count`.
+    pub visits_per_hit: f64,
+}
+
+impl TreeVisits {
+    /// Adds another's counts.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.shaded_hits += other.shaded_hits;
+        self.nodes += other.nodes;
+        self.lights += other.lights;
+        self.selected += other.selected;
+    }
+}
+
+impl Rays {
+    /// Adds another's counts.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.primary += other.primary;
+        self.secondary += other.secondary;
+        self.shadow += other.shadow;
+        self.occlusion += other.occlusion;
+        self.photon += other.photon;
+    }
+}
+
+/// Runs a stage and records its time.
+pub(crate) fn timed<T>(passes: &mut Vec<PassTime>, stage: Stage, work: impl FnOnce() -> T) -> T {
+    let (wall, cpu) = (Instant::now(), ProcessTime::try_now().ok());
+    let result = work();
+    let wall_s = wall.elapsed().as_secs_f64();
+    let cpu_s = cpu.and_then(|start| start.try_elapsed().ok()).map_or(wall_s, |d| d.as_secs_f64());
+    passes.push(PassTime { name: stage.name(), wall_s, cpu_s });
+    result
+}

@@ -1,0 +1,191 @@
+//! Scene descriptions made into flat, immutable worlds: triangles, bounding volume hierarchy, materials, texels, emitters.
+//!
+//! [`World::new`] is the one door: it checks the description, so that rendering cannot fail on content.
+
+mod binary_tree;
+mod collapse;
+mod lights;
+mod mesh;
+mod shapes;
+mod validate;
+
+pub use validate::Defect;
+
+use glam::Vec3;
+use lightcuts_kernel::bvh::{BvhNode, Geometry};
+use lightcuts_kernel::camera::{Camera, PIXEL_PITCH, THESIS_SIZE};
+use lightcuts_kernel::intersect::{Sphere, Square, TriangleBlock};
+use lightcuts_kernel::light::Light;
+use lightcuts_kernel::material::Material;
+use lightcuts_kernel::ray::{NONE, normalize};
+use lightcuts_kernel::surface::{Primitive, Surfaces, TriangleCorners};
+use lightcuts_kernel::texture::{REPEAT, STRAIGHT, STRETCH, Texture};
+use lightcuts_scene::{Issue, MaterialDesc, Projection, SceneDesc, TextureMode};
+
+/// Largest number of primitives: what a child reference of the hierarchy can number.
+pub const MAX_PRIMITIVES: usize = 1 << 28;
+
+/// Everything that rendering reads, as flat slices. Immutable once made.
+#[derive(Debug, Clone)]
+pub struct World {
+    /// Nodes of the hierarchy; the first is the root.
+    pub nodes: Vec<BvhNode>,
+    /// Triangles for intersection, in blocks, in hierarchy order.
+    pub triangles: Vec<TriangleBlock>,
+    /// Spheres in file order.
+    pub spheres: Vec<Sphere>,
+    /// Squares in file order; a cube is six of them.
+    pub squares: Vec<Square>,
+    /// All primitives in file order.
+    pub primitives: Vec<Primitive>,
+    /// What triangles carry at their corners, in file order.
+    pub corners: Vec<TriangleCorners>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Textures.
+    pub textures: Vec<Texture>,
+    /// Texels of all textures.
+    pub texels: Vec<[u8; 4]>,
+    /// The scene's lights, area lights already cut into points.
+    pub lights: Vec<Light>,
+    /// Bounding spheres of the objects in file order (for photon targets).
+    pub object_bounds: Vec<ObjectBounds>,
+    /// Colour of rays that leave the scene.
+    pub background: Vec3,
+    view: View,
+}
+
+/// A sphere around an object, with its optical ratios.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ObjectBounds {
+    /// Centre in scene units.
+    pub center: Vec3,
+    /// Radius in scene units.
+    pub radius: f32,
+    /// Greatest F of its materials.
+    pub reflection: f32,
+    /// Greatest R of its materials.
+    pub refraction: f32,
+}
+
+/// The view without a picture size.
+#[derive(Debug, Clone, Copy)]
+struct View {
+    center: Vec3,
+    forward: Vec3,
+    right: Vec3,
+    up: Vec3,
+    eye_distance: f32,
+}
+
+/// Why a scene cannot be made into a world.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WorldError {
+    /// The description breaks a rule; the first of the issues.
+    #[error("the scene cannot be rendered: {0}")]
+    Scene(Issue),
+    /// More surfaces than the hierarchy can number.
+    #[error("the scene has {0} primitives; at most {MAX_PRIMITIVES} are possible")]
+    TooLarge(usize),
+}
+
+impl World {
+    /// Prepares a scene for rendering.
+    pub fn new(scene: &SceneDesc) -> Result<Self, WorldError> {
+        if let Some(issue) = scene.validate().into_iter().next() {
+            return Err(WorldError::Scene(issue));
+        }
+        let (textures, texels) = pack_textures(scene);
+        let mut builder = shapes::Builder::new(scene);
+        builder.add_objects();
+        builder.add_area_lights();
+        if builder.primitives.len() > MAX_PRIMITIVES {
+            return Err(WorldError::TooLarge(builder.primitives.len()));
+        }
+        let reach = scene.camera.center.abs().max_element();
+        let (nodes, triangles) = collapse::build(&builder, reach);
+        let world = Self {
+            nodes,
+            triangles,
+            object_bounds: builder.object_bounds(),
+            spheres: builder.spheres,
+            squares: builder.squares,
+            primitives: builder.primitives,
+            corners: builder.corners,
+            materials: builder.materials,
+            textures,
+            texels,
+            lights: lights::flatten(scene),
+            background: scene.background,
+            view: view(scene),
+        };
+        debug_assert_eq!(world.validate(), Ok(()));
+        Ok(world)
+    }
+
+    /// What rays can hit.
+    pub fn geometry(&self) -> Geometry<'_> {
+        Geometry { nodes: &self.nodes, triangles: &self.triangles, spheres: &self.spheres, squares: &self.squares }
+    }
+
+    /// What hits lie on.
+    pub fn surfaces(&self) -> Surfaces<'_> {
+        Surfaces {
+            primitives: &self.primitives,
+            corners: &self.corners,
+            spheres: &self.spheres,
+            squares: &self.squares,
+        }
+    }
+
+    /// The camera for a picture of `width` x `height` pixels. The height always spans the thesis' 5.12 units of the view
+    /// plane; a wider picture sees more at the sides.
+    pub fn camera(&self, width: u32, height: u32) -> Camera {
+        let View { center, forward: view, right, up, eye_distance } = self.view;
+        let pitch = PIXEL_PITCH * (THESIS_SIZE as f32 / height as f32);
+        Camera { center, pitch, view, eye_distance, right, width, up, height }
+    }
+}
+
+fn view(scene: &SceneDesc) -> View {
+    let camera = &scene.camera;
+    let forward = normalize(camera.view);
+    let right = normalize(forward.cross(camera.up));
+    let eye_distance = match camera.projection {
+        Projection::Perspective { distance } => distance,
+        Projection::Orthographic => 0.0,
+    };
+    View { center: camera.center, forward, right, up: right.cross(forward), eye_distance }
+}
+
+fn pack_textures(scene: &SceneDesc) -> (Vec<Texture>, Vec<[u8; 4]>) {
+    let mut texels = Vec::new();
+    let mut textures = Vec::new();
+    for image in &scene.images {
+        textures.push(Texture { first: texels.len() as u32, width: image.width, height: image.height, padding: 0 });
+        texels.extend(image.texels.iter().map(|&[r, g, b]| [r, g, b, 255]));
+    }
+    (textures, texels)
+}
+
+fn flat_material(desc: &MaterialDesc) -> Material {
+    let mode = |mode: TextureMode| match mode {
+        TextureMode::Stretch => STRETCH,
+        TextureMode::Repeat => REPEAT,
+        TextureMode::Straight => STRAIGHT,
+    };
+    Material {
+        specular: desc.specular,
+        exponent: desc.exponent,
+        diffuse: desc.diffuse,
+        reflection: desc.reflection,
+        ambient: desc.ambient,
+        refraction: desc.refraction,
+        glow: Vec3::ZERO,
+        refraction_ratio: desc.refraction_ratio,
+        local: desc.local,
+        texture: desc.texture.map_or(NONE, |t| t.image.0),
+        texture_mode: desc.texture.map_or(STRETCH, |t| mode(t.mode)),
+        padding: 0,
+    }
+}

@@ -1,0 +1,102 @@
+//! An entry of `docs/benchmarks.md`: when, on what and of what the numbers are.
+
+use crate::project;
+use std::process::Command;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// The entry for a table, of today unless a date is given.
+pub(super) fn entry(date: Option<&str>, runs: u32, table: &str) -> String {
+    let date = date.map_or_else(today, str::to_owned);
+    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let median = if runs == 1 { "one run".to_owned() } else { format!("median of {runs} runs") };
+    format!(
+        "\n## {date}, revision {}\n\n{}, {threads} hardware threads; {median} per configuration.\n\n{table}",
+        revision(),
+        processor(),
+    )
+}
+
+fn today() -> String {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |elapsed| elapsed.as_secs());
+    date_of(seconds / 86_400)
+}
+
+/// The date of a day counted from 1970-01-01, as year-month-day.
+fn date_of(mut day: u64) -> String {
+    let is_leap = |year: u64| year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
+    let mut year = 1970;
+    while day >= 365 + u64::from(is_leap(year)) {
+        day -= 365 + u64::from(is_leap(year));
+        year += 1;
+    }
+    let february = 28 + u64::from(is_leap(year));
+    let mut month = 1;
+    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30] {
+        if day < length {
+            break;
+        }
+        day -= length;
+        month += 1;
+    }
+    format!("{year:04}-{month:02}-{:02}", day + 1)
+}
+
+/// The processor's name, where the system tells it.
+fn processor() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    model_name(&text).unwrap_or("unknown processor").to_owned()
+}
+
+fn model_name(cpuinfo: &str) -> Option<&str> {
+    let line = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
+    line.split_once(':').map(|(_, name)| name.trim())
+}
+
+/// The git revision, with a remark if files have changed since.
+fn revision() -> String {
+    let git = |arguments: &[&str]| {
+        let output = Command::new("git").args(arguments).current_dir(project::root()).output().ok()?;
+        output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    let Some(revision) = git(&["rev-parse", "--short=12", "HEAD"]) else { return "unknown".to_owned() };
+    match git(&["status", "--porcelain"]) {
+        Some(changes) if changes.is_empty() => revision,
+        _ => format!("{revision} with changes"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn days_become_dates() {
+        for (day, date) in [
+            (0, "1970-01-01"),
+            (58, "1970-02-28"),
+            (59, "1970-03-01"),
+            (11_016, "2000-02-29"),
+            (11_017, "2000-03-01"),
+            (20_453, "2025-12-31"),
+            (20_454, "2026-01-01"),
+        ] {
+            assert_eq!(date_of(day), date);
+        }
+    }
+
+    #[test]
+    fn the_processor_is_named() {
+        assert_eq!(
+            model_name("processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\nflags\t: fpu\n"),
+            Some("Some CPU @ 2 GHz")
+        );
+        assert_eq!(model_name("processor : 0\n"), None);
+    }
+
+    #[test]
+    fn an_entry_has_its_date_and_table() {
+        let entry = entry(Some("2026-11-30"), 3, "| a |\n");
+        assert!(entry.starts_with("\n## 2026-11-30, revision "), "{entry}");
+        assert!(entry.ends_with("median of 3 runs per configuration.\n\n| a |\n"), "{entry}");
+    }
+}

@@ -1,0 +1,46 @@
+//! The tasks of the project's house: `cargo xtask --help`.
+
+mod bench;
+mod ci;
+mod gallery;
+mod model_files;
+mod models;
+mod project;
+mod tally;
+mod test;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+
+/// Tasks of the lightcuts project.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Run every test, documentation examples included.
+    Test,
+    /// Check everything that a change must pass: format, lints, documentation, tests.
+    Ci,
+    /// Write the generated models to scenes/models.
+    Models(model_files::Args),
+    /// Measure.
+    #[command(subcommand)]
+    Bench(bench::Bench),
+    /// Render every scene to out/gallery.
+    Gallery(gallery::Args),
+}
+
+fn main() -> Result<()> {
+    match Cli::parse().task {
+        Task::Test => test::run(),
+        Task::Ci => ci::run(),
+        Task::Models(args) => model_files::run(&args),
+        Task::Bench(bench) => bench::run(&bench),
+        Task::Gallery(args) => gallery::run(&args),
+    }
+}

@@ -1,0 +1,44 @@
+//! `cargo xtask test`: all tests, with whatever they need. So far they need nothing but Rust.
+
+use crate::project::{self, cargo, shown};
+use crate::tally::Tally;
+use anyhow::{Context as _, Result, bail};
+use std::io::{BufRead as _, BufReader};
+use std::process::{Command, Stdio};
+
+/// Runs the workspace's tests and documentation examples.
+pub(crate) fn run() -> Result<()> {
+    if has_nextest() {
+        println!("tests run with cargo-nextest, documentation examples with cargo test");
+        // First, so that the last line is that of nextest.
+        run_counted(cargo().args(["test", "--doc", "--workspace", "--no-fail-fast"]), "documentation examples")?;
+        project::run(cargo().args(["nextest", "run", "--workspace", "--no-fail-fast"]))
+    } else {
+        println!("tests run with cargo test; cargo-nextest is used where it is installed");
+        run_counted(cargo().args(["test", "--workspace", "--no-fail-fast"]), "all tests")
+    }
+}
+
+fn has_nextest() -> bool {
+    let asked = cargo().args(["nextest", "--version"]).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    asked.is_ok_and(|status| status.success())
+}
+
+/// Runs `cargo test`, passes its output on and ends with one line of sums.
+fn run_counted(command: &mut Command, what: &str) -> Result<()> {
+    let typed = shown(command);
+    println!("$ {typed}");
+    let mut child = command.stdout(Stdio::piped()).spawn().with_context(|| format!("cannot run `{typed}`"))?;
+    let mut tally = Tally::default();
+    for line in BufReader::new(child.stdout.take().context("the output is piped")?).lines() {
+        let line = line?;
+        tally.add(&line);
+        println!("{line}");
+    }
+    let status = child.wait()?;
+    println!("{what}: {tally}");
+    if !status.success() {
+        bail!("`{typed}` failed: {status}");
+    }
+    Ok(())
+}
