@@ -1,9 +1,9 @@
 //! The thesis' own numbers and pictures.
 
+use crate::scene;
 use lightcuts_image::{fraction_within, read_exr};
-use lightcuts_import::{ImportOptions, load};
 use lightcuts_render::{Options, Rendering, Settings, Strategy, Unwatched, render};
-use lightcuts_testkit::{project_root, shared};
+use lightcuts_testkit::shared;
 use lightcuts_world::World;
 use std::path::PathBuf;
 
@@ -13,10 +13,7 @@ fn prepare(name: &str, model: Option<&str>) -> Option<(World, Settings)> {
         Some(model) => vec![shared(model)?.parent()?.to_owned()],
         None => Vec::new(),
     };
-    let path = project_root().join("scenes/thesis").join(name);
-    let imported = load(&path, &ImportOptions { search_paths, ..ImportOptions::default() }).expect("the scene loads");
-    let world = World::new(&imported.scene).expect("the scene is sound");
-    let mut settings = Settings::for_scene(&imported.scene);
+    let (world, mut settings) = scene(&format!("thesis/{name}"), search_paths);
     settings.run.reproduce = true;
     Some((world, settings))
 }
@@ -35,9 +32,6 @@ fn appendix_c(name: &str, model: Option<&str>, vpls: u64, ratio: f64) {
         "{name}: {} VPLs, light ratio {:.4} %, {:.1} visits per hit",
         stats.vpl_count, stats.light_ratio_percent, stats.tree.visits_per_hit
     );
-    for pass in &stats.passes {
-        println!("  {} {:.3} cpu {:.3}", pass.name, pass.wall_s, pass.cpu_s);
-    }
     assert_eq!(stats.vpl_count, vpls);
     assert!((stats.light_ratio_percent - ratio).abs() <= 0.01, "{}", stats.light_ratio_percent);
 }
