@@ -2,6 +2,8 @@
 
 mod bench;
 mod ci;
+#[cfg(test)]
+mod docs;
 mod gallery;
 mod model_files;
 mod models;
@@ -11,6 +13,7 @@ mod test;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
+use std::process::ExitCode;
 
 /// Tasks of the lightcuts project.
 #[derive(Debug, Parser)]
@@ -35,12 +38,22 @@ enum Task {
     Gallery(gallery::Args),
 }
 
-fn main() -> Result<()> {
-    match Cli::parse().task {
+fn main() -> ExitCode {
+    match run(&Cli::parse().task) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(task: &Task) -> Result<()> {
+    match task {
         Task::Test => test::run(),
         Task::Ci => ci::run(),
-        Task::Models(args) => model_files::run(&args),
-        Task::Bench(bench) => bench::run(&bench),
-        Task::Gallery(args) => gallery::run(&args),
+        Task::Models(args) => model_files::run(args),
+        Task::Bench(bench) => bench::run(bench),
+        Task::Gallery(args) => gallery::run(args),
     }
 }

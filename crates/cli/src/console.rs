@@ -5,11 +5,15 @@ use miette::{MietteHandlerOpts, Report};
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 
 /// Decides once how diagnostics look: in colours on a terminal, and elsewhere without line breaks of our own, so that
-/// `file:line:column` stays in one piece for other programs.
+/// `file:line:column` stays in one piece for other programs. Causes are part of our messages already.
 pub(crate) fn set_up() {
     let (colors, terminal) = (has_colors(), stderr().is_terminal());
     let hook = miette::set_hook(Box::new(move |_| {
-        let options = MietteHandlerOpts::new().terminal_links(colors).wrap_lines(terminal).break_words(terminal);
+        let options = MietteHandlerOpts::new()
+            .without_cause_chain()
+            .terminal_links(colors)
+            .wrap_lines(terminal)
+            .break_words(terminal);
         Box::new(if colors { options } else { options.color(false) }.build())
     }));
     debug_assert!(hook.is_ok(), "the hook is set once");

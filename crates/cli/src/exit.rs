@@ -51,11 +51,13 @@ impl Failure {
     }
 
     /// An input that cannot be read.
+    #[expect(clippy::needless_pass_by_value, reason = "fits `map_err`")]
     pub(crate) fn input(message: impl ToString) -> Self {
         Self::new(Exit::Input, MietteDiagnostic::new(message.to_string()))
     }
 
     /// An output that cannot be written.
+    #[expect(clippy::needless_pass_by_value, reason = "fits `map_err`")]
     pub(crate) fn output(message: impl ToString) -> Self {
         Self::new(Exit::NotWritten, MietteDiagnostic::new(message.to_string()))
     }

@@ -11,6 +11,7 @@ mod fault;
 mod info;
 mod interrupt;
 mod job;
+mod memory;
 mod outputs;
 mod plan;
 mod progress;

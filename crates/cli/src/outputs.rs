@@ -27,18 +27,16 @@ impl Outputs {
     /// What the command line asks for. A scene's picture is `<scene>.png` in the current folder unless it asks for more.
     pub(crate) fn new(args: &OutputArgs, scene: &Path) -> Result<Self, Failure> {
         let mut files: Vec<(Kind, PathBuf)> = Vec::new();
-        if !args.dry_run {
-            for path in &args.pictures {
-                files.push((picture_kind(path)?, path.clone()));
-            }
-            if files.is_empty() {
-                let mut name = scene.file_stem().unwrap_or("picture".as_ref()).to_owned();
-                name.push(".png");
-                files.push((Kind::Png, name.into()));
-            }
-            files.extend(args.stats.clone().map(|path| (Kind::Stats, path)));
-            files.extend(args.write_vpls.clone().map(|path| (Kind::Vpls, path)));
+        for path in &args.pictures {
+            files.push((picture_kind(path)?, path.clone()));
         }
+        if files.is_empty() && !args.dry_run {
+            let mut name = scene.file_stem().unwrap_or("picture".as_ref()).to_owned();
+            name.push(".png");
+            files.push((Kind::Png, name.into()));
+        }
+        files.extend(args.stats.clone().map(|path| (Kind::Stats, path)));
+        files.extend(args.write_vpls.clone().map(|path| (Kind::Vpls, path)));
         files.extend(args.write_job.clone().map(|path| (Kind::Job, path)));
         Ok(Self { files })
     }

@@ -8,7 +8,7 @@ use crate::outputs::{Kind, job_text};
 use crate::plan::Plan;
 use crate::progress::Progress;
 use crate::report::{Statistics, summary};
-use crate::{console, interrupt};
+use crate::{console, interrupt, memory};
 use lightcuts::{Options, Rendering, Simd, VplCsvError, World, image, vpls_from_csv, vpls_to_csv};
 use std::path::Path;
 
@@ -21,8 +21,9 @@ pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
     interrupt::listen();
     let plan = Plan::new(args)?;
     if args.output.dry_run {
-        return dry_run(&plan, args.output.quiet);
+        return dry_run(plan, args.output.quiet);
     }
+    memory::require_for(plan.job.settings.image)?;
     let options = options(&plan, &args.performance)?;
     let world = World::new(&plan.scene).map_err(Failure::input)?;
     if interrupt::came() {
@@ -57,7 +58,8 @@ fn finish(plan: &Plan, rendering: &Rendering, quiet: bool) -> Result<Exit, Failu
     Ok(Exit::Interrupted)
 }
 
-fn dry_run(plan: &Plan, quiet: bool) -> Result<Exit, Failure> {
+fn dry_run(mut plan: Plan, quiet: bool) -> Result<Exit, Failure> {
+    plan.outputs.files.retain(|(kind, _)| *kind == Kind::Job);
     let (written, exit) = plan.outputs.write(|_, path| write(path, &job_text(&plan.job, path)?));
     if !quiet {
         let names = written.iter().map(|path| format!("wrote {}\n", path.display()));

@@ -1,6 +1,7 @@
 //! What a finished render says of itself: JSON for machines, a few lines for people.
 
 use crate::exit::Failure;
+use crate::memory;
 use crate::plan::Plan;
 use lightcuts::{Rendering, Settings, Stats};
 use serde::Serialize;
@@ -29,7 +30,7 @@ impl<'a> Statistics<'a> {
             scene: &plan.scene.name,
             scene_file: plan.job.scene.display().to_string(),
             threads: rayon::current_num_threads(),
-            peak_memory_bytes: peak_memory_bytes(),
+            peak_memory_bytes: memory::peak_bytes(),
             stats: &rendering.stats,
             settings: &plan.job.settings,
         }
@@ -40,13 +41,6 @@ impl<'a> Statistics<'a> {
         let refuse = |error| Failure::output(format!("cannot write the statistics: {error}"));
         serde_json::to_string_pretty(self).map(|text| text + "\n").map_err(refuse)
     }
-}
-
-/// Highest resident size of this process so far, which Linux tells in `VmHWM`, in units of 1024 bytes.
-fn peak_memory_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
 }
 
 /// The lines on standard output after a render.

@@ -1,4 +1,4 @@
-//! The light tree: VPLs in blocks of eight, nodes over ranges of blocks, bounds on the thesis' relevance.
+//! The light tree: VPLs in blocks of eight, nodes of eight clusters each, bounds on the thesis' relevance.
 
 use crate::light::Vpl;
 use crate::ray::normalize;
@@ -53,35 +53,96 @@ impl VplBlock {
     }
 }
 
-/// A cluster of VPLs: a range of blocks with what they have in common. Nodes stand in depth-first order: the left child
-/// of an inner node follows it. 80 bytes.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct LightNode {
+/// A cluster of VPLs: a range of blocks with what they have in common.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightCluster {
     /// Lower corner of the box around the positions.
     pub lower: Vec3,
-    /// Greatest intensity.
-    pub max_intensity: f32,
     /// Upper corner of the box around the positions.
     pub upper: Vec3,
-    /// Least intensity.
-    pub min_intensity: f32,
     /// Unit axis of the cone around the directions.
     pub axis: Vec3,
     /// Cosine of the cone's half angle, rounded down; -1 where the directions have no common hemisphere.
     pub cos_spread: f32,
+    /// Sine of the cone's half angle.
+    pub sin_spread: f32,
+    /// Least intensity.
+    pub min_intensity: f32,
+    /// Greatest intensity.
+    pub max_intensity: f32,
     /// First block.
     pub first_block: u32,
-    /// Number of blocks; 1 in a leaf.
+    /// Number of blocks.
     pub block_count: u32,
-    /// Right child, or 0 in a leaf.
-    pub right: u32,
     /// Number of VPLs.
     pub vpl_count: u32,
-    /// Centre of the sphere around the box.
-    pub center: Vec3,
-    /// Radius of the sphere around the box, rounded up.
-    pub radius: f32,
+    /// Its node, or 0 for a single block (the root is nobody's child).
+    pub node: u32,
+}
+
+/// Up to eight clusters, component by component, in the order of their blocks. Empty lanes have no blocks.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LightNode {
+    /// Lower corners of the boxes.
+    pub lower: [[f32; LANES]; 3],
+    /// Upper corners of the boxes.
+    pub upper: [[f32; LANES]; 3],
+    /// Axes of the cones.
+    pub axis: [[f32; LANES]; 3],
+    /// Cosines of the cones' half angles.
+    pub cos_spread: [f32; LANES],
+    /// Sines of the cones' half angles.
+    pub sin_spread: [f32; LANES],
+    /// Least intensities.
+    pub min_intensity: [f32; LANES],
+    /// Greatest intensities.
+    pub max_intensity: [f32; LANES],
+    /// First blocks.
+    pub first_block: [u32; LANES],
+    /// Numbers of blocks; 0 for an empty lane.
+    pub block_count: [u32; LANES],
+    /// Numbers of VPLs.
+    pub vpl_count: [u32; LANES],
+    /// Nodes of the clusters, or 0 for single blocks.
+    pub node: [u32; LANES],
+}
+
+impl LightNode {
+    /// The cluster of one lane.
+    pub fn cluster(&self, lane: usize) -> LightCluster {
+        let vector = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
+        LightCluster {
+            lower: vector(&self.lower),
+            upper: vector(&self.upper),
+            axis: vector(&self.axis),
+            cos_spread: self.cos_spread[lane],
+            sin_spread: self.sin_spread[lane],
+            min_intensity: self.min_intensity[lane],
+            max_intensity: self.max_intensity[lane],
+            first_block: self.first_block[lane],
+            block_count: self.block_count[lane],
+            vpl_count: self.vpl_count[lane],
+            node: self.node[lane],
+        }
+    }
+
+    /// Puts a cluster into a lane.
+    pub fn set(&mut self, lane: usize, cluster: &LightCluster) {
+        for axis in 0..3 {
+            self.lower[axis][lane] = cluster.lower[axis];
+            self.upper[axis][lane] = cluster.upper[axis];
+            self.axis[axis][lane] = cluster.axis[axis];
+        }
+        self.cos_spread[lane] = cluster.cos_spread;
+        self.sin_spread[lane] = cluster.sin_spread;
+        self.min_intensity[lane] = cluster.min_intensity;
+        self.max_intensity[lane] = cluster.max_intensity;
+        self.first_block[lane] = cluster.first_block;
+        self.block_count[lane] = cluster.block_count;
+        self.vpl_count[lane] = cluster.vpl_count;
+        self.node[lane] = cluster.node;
+    }
 }
 
 /// The thesis' relevance of a VPL for a point (Eq. 4.2): cosine at the light times intensity over squared distance.
@@ -97,37 +158,42 @@ pub fn relevance(position: Vec3, direction: Vec3, intensity: f32, point: Vec3) -
 
 /// Least and greatest relevance that any VPL of a cluster can have for a point, up to [`BOUND_MARGIN`].
 ///
-/// The cluster is bounded by its sphere: seen from the point, directions to its VPLs deviate from the direction to the
-/// centre by at most asin(r/d), and their own directions from the axis by at most the cone's half angle. Without
-/// trigonometry: cosines of sums of angles from their sines and cosines.
-pub fn relevance_bounds(node: &LightNode, point: Vec3) -> (f32, f32) {
-    let from_center = point - node.center;
-    let dist_sq = from_center.dot(from_center);
-    let radius_sq = node.radius * node.radius;
-    let outside_box = (node.lower - point).max(point - node.upper).max(Vec3::ZERO);
-    let min_dist_sq = outside_box.dot(outside_box);
-    if dist_sq <= radius_sq * (1.0 + BOUND_MARGIN) {
-        let upper = if min_dist_sq > 0.0 { node.max_intensity / min_dist_sq } else { f32::INFINITY };
-        return (0.0, upper);
-    }
-    let dist = dist_sq.sqrt();
-    let sin_sphere = node.radius / dist;
-    let cos_sphere = (1.0 - sin_sphere * sin_sphere).max(0.0).sqrt();
-    let sin_spread = (1.0 - node.cos_spread * node.cos_spread).max(0.0).sqrt();
-    // delta: both deviations together.
-    let cos_delta = cos_sphere * node.cos_spread - sin_sphere * sin_spread;
-    let sin_delta = sin_sphere * node.cos_spread + cos_sphere * sin_spread;
-    let cos_axis = (node.axis.dot(from_center) / dist).clamp(-1.0, 1.0);
-    let sin_axis = (1.0 - cos_axis * cos_axis).sqrt();
-    // Past half a turn the deviation covers everything.
-    let wide = sin_delta < 0.0 || node.cos_spread <= -1.0;
-    let cos_upper = if wide || cos_axis >= cos_delta { 1.0 } else { cos_axis * cos_delta + sin_axis * sin_delta };
-    // The sum of angles stays below half a turn if and only if its sine is positive.
-    let bent = sin_axis * cos_delta + cos_axis * sin_delta;
-    let cos_lower = if wide || bent < 0.0 { 0.0 } else { (cos_axis * cos_delta - sin_axis * sin_delta).max(0.0) };
-    let (near, far) = ((dist - node.radius).max(0.0), dist + node.radius);
-    let upper = cos_upper.max(0.0) * node.max_intensity / (near * near).max(min_dist_sq);
-    (cos_lower * node.min_intensity / (far * far), upper)
+/// With v the vectors from the cluster's positions to the point, a box: the cosine between v and the cone's axis lies
+/// between the least and greatest v . axis over the greatest and least |v|; the VPLs' own directions deviate from the
+/// axis by at most the cone's half angle, which widens both without trigonometry (Walter et al. 2005, section 5.3; the
+/// distances are bounded apart from the cosine).
+pub fn relevance_bounds(cluster: &LightCluster, point: Vec3) -> (f32, f32) {
+    let (from_upper, from_lower) = (point - cluster.upper, point - cluster.lower);
+    let outside = from_upper.max(-from_lower).max(Vec3::ZERO);
+    let farthest = from_lower.abs().max(from_upper.abs());
+    let (near_sq, far_sq) = (outside.dot(outside), farthest.dot(farthest));
+    let (near, far) = (near_sq.sqrt(), far_sq.sqrt());
+    let (a, b) = (cluster.axis * from_upper, cluster.axis * from_lower);
+    let (least, greatest) = (a.min(b).dot(Vec3::ONE), a.max(b).dot(Vec3::ONE));
+    let upper = cos_of_difference(least_magnitude(greatest, near, far), cluster.cos_spread, cluster.sin_spread);
+    let lower = cos_of_sum(least_magnitude(least, far, near), cluster.cos_spread, cluster.sin_spread);
+    (lower.max(0.0) * cluster.min_intensity / far_sq, upper.max(0.0) * cluster.max_intensity / near_sq)
+}
+
+/// An end of the range of cosines from the same end of the range of v . axis: over one distance where that is
+/// positive, over the other where it is negative. From -1 to 1.
+fn least_magnitude(along: f32, positive: f32, negative: f32) -> f32 {
+    (along / if along > 0.0 { positive } else { negative }).clamp(-1.0, 1.0)
+}
+
+/// Cosine of the sum of two angles, the first given by its cosine; -1 past half a turn.
+fn cos_of_sum(cosine: f32, cos_spread: f32, sin_spread: f32) -> f32 {
+    let sine = (1.0 - cosine * cosine).sqrt();
+    // The sum stays below half a turn if and only if its sine is positive.
+    let below = sine * cos_spread + cosine * sin_spread >= 0.0;
+    if below { cosine * cos_spread - sine * sin_spread } else { -1.0 }
+}
+
+/// Cosine of the first angle less the second; 1 where the second is larger, and for a point in the box, which may be
+/// faced whatever the cosine (0/0).
+fn cos_of_difference(cosine: f32, cos_spread: f32, sin_spread: f32) -> f32 {
+    let sine = (1.0 - cosine * cosine).sqrt();
+    if cosine < cos_spread { cosine * cos_spread + sine * sin_spread } else { 1.0 }
 }
 
 /// What a traversal does with a cluster.
@@ -142,9 +208,10 @@ pub enum Decision {
 }
 
 /// Compares a cluster's bounds with a threshold, leaving [`BOUND_MARGIN`] to the exact test.
-pub fn decide(node: &LightNode, point: Vec3, threshold: f32) -> Decision {
-    let (lower, upper) = relevance_bounds(node, point);
-    if upper * (1.0 + BOUND_MARGIN) + f32::MIN_POSITIVE < threshold {
+pub fn decide(cluster: &LightCluster, point: Vec3, threshold: f32) -> Decision {
+    let (lower, upper) = relevance_bounds(cluster, point);
+    // Only a true comparison decides: bounds of a point in the box may be NaN.
+    if upper * (1.0 + BOUND_MARGIN) < threshold {
         Decision::Reject
     } else if lower * (1.0 - BOUND_MARGIN) >= threshold && lower > 0.0 {
         Decision::Accept

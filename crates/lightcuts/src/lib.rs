@@ -47,7 +47,7 @@ pub mod scene {
     pub use lightcuts_scene::*;
 }
 
-/// The tables of [`Settings`](crate::Settings) and what a render reports.
+/// The tables of [`Settings`] and what a render reports.
 pub mod rendering {
     pub use lightcuts_render::*;
 }

@@ -1,6 +1,6 @@
 //! A render from its first pass to the finished picture: the walk through the stations.
 
-use crate::cpu::{Chosen, Tracer};
+use crate::cpu::{Candidates, Tracer};
 use crate::film::Tile;
 use crate::light_tree::LightTree;
 use crate::monitor::{Monitor, Stage};
@@ -116,8 +116,10 @@ impl<'a> Job<'a> {
         let occlusion = self.occlusion();
         let lighting = Lighting::Scene { occlusion: occlusion.as_ref() };
         let wanted = settings.vpl.enabled && self.given_vpls.is_none();
-        let placement = wanted
-            .then(|| Placement::new(&settings.vpl, settings.sampling.samples, stream(settings.run.seed, PLACEMENT)));
+        let size = settings.image;
+        let camera_rays = u64::from(size.width) * u64::from(size.height) * u64::from(settings.sampling.samples);
+        let stream = stream(settings.run.seed, PLACEMENT);
+        let placement = wanted.then(|| Placement::new(&settings.vpl, camera_rays, stream));
         let sampler = self.sampler(0, settings.sampling.samples);
         let mut vpls = Vec::new();
         let pass = self.pass(lighting, Shifts::Sampler(&sampler), Wants::SurfacesAndVpls(placement.as_ref()));
@@ -133,7 +135,7 @@ impl<'a> Job<'a> {
     /// number of hits before it.
     fn first_pass_original(&mut self, mut draws: OriginalDraws) -> Vec<Vpl> {
         let settings = self.settings;
-        let placement = Placement::new(&settings.vpl, 1, 0);
+        let placement = Placement::new(&settings.vpl, u64::from(self.view.camera.width * self.view.camera.height), 0);
         let occlusion = self.occlusion();
         let (width, height) = (self.view.camera.width, self.view.camera.height);
         let mut shifts = vec![[0.0; 2]; (width * height) as usize];
@@ -189,8 +191,7 @@ impl<'a> Job<'a> {
     /// Station 5: light of the VPLs.
     fn second_pass(&mut self, tree: &LightTree, photons: Option<&PhotonMap>) {
         let settings = self.settings;
-        let all: Vec<Chosen> =
-            (0..tree.blocks.len() as u32).map(|block| Chosen { block, lanes: tree.lanes(block) }).collect();
+        let all: Vec<Candidates> = tree.every_block(true).collect();
         let lighting = Lighting::Vpls(VplLighting {
             tree,
             strategy: settings.gather.strategy,
@@ -326,6 +327,7 @@ mod tests {
     use super::*;
     use crate::Unwatched;
     use crate::cpu::{select, select_exhaustively};
+    use crate::light_tree::tests::chosen;
     use lightcuts_import::{ImportOptions, load};
     use lightcuts_testkit::{project_root, shared};
 
@@ -354,9 +356,11 @@ mod tests {
             for hit in &hits {
                 found.clear();
                 expected.clear();
-                select(&tree, pass.view.tracer.avx2, hit.surface.point, settings.gather.threshold, &mut found);
-                select_exhaustively(&tree, hit.surface.point, settings.gather.threshold, &mut expected);
-                assert_eq!(found, expected, "{name} at {}", hit.surface.point);
+                let (point, threshold) = (hit.surface.point, settings.gather.threshold);
+                select(&tree, pass.view.tracer.avx2, point, threshold, &mut found);
+                select_exhaustively(&tree, &mut expected);
+                let sets = [&found, &expected].map(|candidates| chosen(&tree, candidates, point, threshold));
+                assert_eq!(sets[0], sets[1], "{name} at {point}");
             }
             println!("{name}: the sets of all {} hits are equal", hits.len());
         }

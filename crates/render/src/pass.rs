@@ -10,7 +10,7 @@ use crate::settings::{Filter, VplPlacement};
 use crate::shade::{Lighting, Shader};
 use crate::stats::{Rays, TreeVisits};
 use glam::Vec3;
-use lightcuts_kernel::camera::{Camera, camera_ray};
+use lightcuts_kernel::camera::{Camera, THESIS_SIZE, camera_ray};
 use lightcuts_kernel::light::Vpl;
 use lightcuts_kernel::rng::random4;
 use lightcuts_world::World;
@@ -75,9 +75,12 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    pub(crate) fn new(settings: &VplPlacement, samples: u32, stream: u32) -> Self {
+    /// `samples` camera rays are to place as many VPLs, on average, as the thesis' picture of one per pixel: VPLs are not
+    /// weighted, so their number decides how bright the second pass is.
+    pub(crate) fn new(settings: &VplPlacement, samples: u64, stream: u32) -> Self {
+        let thesis_samples = u64::from(THESIS_SIZE) * u64::from(THESIS_SIZE);
         Self {
-            probability: effective_probability(settings.probability / samples as f32),
+            probability: effective_probability(settings.probability) * (thesis_samples as f32 / samples as f32),
             min_illumination: settings.min_illumination,
             attenuation: settings.attenuation,
             stream,

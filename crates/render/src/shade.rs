@@ -1,6 +1,6 @@
 //! Light at a hit: the scene's lights in the first pass, VPLs in the second.
 
-use crate::cpu::{Chosen, PacketStack, Receiver, Tracer, evaluate, select, select_exhaustively};
+use crate::cpu::{Candidates, PacketStack, Receiver, Tracer, evaluate, select, select_exhaustively};
 use crate::light_tree::LightTree;
 use crate::occlusion::Occlusion;
 use crate::photon_map::PhotonMap;
@@ -31,7 +31,7 @@ pub(crate) struct VplLighting<'a> {
     pub(crate) tree: &'a LightTree,
     pub(crate) strategy: Strategy,
     /// Every VPL, for [`Strategy::All`].
-    pub(crate) all: &'a [Chosen],
+    pub(crate) all: &'a [Candidates],
     /// Least relevance of a chosen VPL, for the other strategies.
     pub(crate) threshold: f32,
     pub(crate) photons: Option<&'a PhotonMap>,
@@ -58,7 +58,7 @@ pub(crate) struct Shader<'a> {
     pub(crate) visits: TreeVisits,
     /// VPLs that lit each shaded hit of the current ray tree, in order of shading.
     pub(crate) selected: Vec<u32>,
-    chosen: Vec<Chosen>,
+    candidates: Vec<Candidates>,
     stack: PacketStack,
 }
 
@@ -72,7 +72,7 @@ impl<'a> Shader<'a> {
             rays: Rays::default(),
             visits: TreeVisits::default(),
             selected: Vec::new(),
-            chosen: Vec::new(),
+            candidates: Vec::new(),
             stack: PacketStack::new(),
         }
     }
@@ -146,25 +146,20 @@ impl<'a> Shader<'a> {
     /// The VPLs chosen for a hit, and caustics.
     fn gather(&mut self, vpls: &VplLighting<'_>, Found { surface, material, epsilon, .. }: &Found) -> Vec3 {
         let (tree, point) = (vpls.tree, surface.point);
-        self.chosen.clear();
-        let chosen = &mut self.chosen;
+        self.candidates.clear();
+        let candidates = &mut self.candidates;
         let visits = match vpls.strategy {
             Strategy::All => TreeVisits::default(),
-            Strategy::Lightcuts => select(tree, self.tracer.avx2, point, vpls.threshold, chosen),
-            Strategy::LightcutsExhaustive => select_exhaustively(tree, point, vpls.threshold, chosen),
+            Strategy::Lightcuts => select(tree, self.tracer.avx2, point, vpls.threshold, candidates),
+            Strategy::LightcutsExhaustive => select_exhaustively(tree, candidates),
         };
-        self.visits.add(&visits);
-        let chosen = if vpls.strategy == Strategy::All { vpls.all } else { &self.chosen };
-        let count: u32 = chosen.iter().map(|c| c.lanes.count_ones()).sum();
-        self.visits.shaded_hits += 1;
-        self.visits.selected += u64::from(count);
-        self.selected.push(count);
+        let candidates = if vpls.strategy == Strategy::All { vpls.all } else { &self.candidates };
         let receiver = Receiver { point, normal: surface.normal, diffuse: material.diffuse, epsilon: *epsilon };
-        let (color, shadow_rays) = evaluate(&self.tracer, &tree.blocks, chosen, &receiver, &mut self.stack);
-        self.rays.shadow += shadow_rays;
-        color
-            + vpls
-                .photons
-                .map_or(Vec3::ZERO, |photons| photons.gather(surface.point, surface.normal) * material.diffuse)
+        let gathered = evaluate(&self.tracer, &tree.blocks, candidates, vpls.threshold, &receiver, &mut self.stack);
+        self.visits.add(&TreeVisits { shaded_hits: 1, selected: u64::from(gathered.chosen), ..visits });
+        self.selected.push(gathered.chosen);
+        self.rays.shadow += gathered.shadow_rays;
+        let caustics = vpls.photons.map_or(Vec3::ZERO, |photons| photons.gather(point, surface.normal));
+        gathered.color + caustics * material.diffuse
     }
 }

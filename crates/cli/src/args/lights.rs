@@ -8,24 +8,24 @@ use serde::Serialize;
 #[command(next_help_heading = "VPLs")]
 #[serde(rename_all = "kebab-case")]
 pub(crate) struct VplFlags {
-    /// Nominal probability that a hit of the first pass becomes a VPL, 0 to 1 [default: the scene's, else 0.0001].
+    /// Nominal probability that a hit of the first pass becomes a VPL, 0 to 1 [default: the scene's, else 0.0001]
     ///
     /// The effective one is about 30.5 times as much, as in the original: (floor(p 10^6) + 1) / 32768. More VPLs give
     /// smoother indirect light and a brighter picture (the thesis does not divide by their number): lower
     /// --vpl-attenuation in proportion.
     #[arg(long = "vpl-probability", value_name = "P")]
     probability: Option<f32>,
-    /// Least r + g + b of a hit's colour for it to become a VPL, 0 to 3 [default: the scene's, else 0.7].
+    /// Least r + g + b of a hit's colour for it to become a VPL, 0 to 3 [default: the scene's, else 0.7]
     ///
     /// Lower it where dim surfaces should light others too; there will be more VPLs.
     #[arg(long = "vpl-min-illumination", value_name = "X")]
     min_illumination: Option<f32>,
-    /// Factor on every VPL's light [default: the scene's, else 0.075].
+    /// Factor on every VPL's light [default: the scene's, else 0.075]
     ///
     /// The brightness of all indirect light. Halve it when there are twice as many VPLs.
     #[arg(long = "vpl-attenuation", value_name = "X")]
     attenuation: Option<f32>,
-    /// Make only the first pass: direct light, mirrors and refraction, no light of VPLs [default: false].
+    /// Make only the first pass: direct light, mirrors and refraction, no light of VPLs [default: false]
     #[arg(long = "no-second-pass", value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     #[serde(serialize_with = "negated")]
     enabled: Option<bool>,
@@ -35,13 +35,13 @@ pub(crate) struct VplFlags {
 #[command(next_help_heading = "Gather")]
 #[serde(rename_all = "kebab-case")]
 pub(crate) struct GatherFlags {
-    /// Which VPLs light a point [default: lightcuts].
+    /// Which VPLs light a point [default: lightcuts]
     ///
     /// `lightcuts`: those whose relevance reaches --threshold, found through a bounded tree. `all`: every one, slower; the
     /// reference to compare with.
-    #[arg(long = "gather", value_parser = ["all", "lightcuts"])]
+    #[arg(long = "gather", value_name = "STRATEGY", value_parser = ["all", "lightcuts"])]
     strategy: Option<String>,
-    /// Least relevance of a VPL for `--gather lightcuts` [default: the scene's, else 0.000001].
+    /// Least relevance of a VPL for `--gather lightcuts` [default: the scene's, else 0.000001]
     ///
     /// Relevance is intensity x cosine / squared distance, so it depends on the scene's scale. A higher threshold is
     /// faster and darker; the summary's light ratio tells the share of VPLs that are left. 0 chooses

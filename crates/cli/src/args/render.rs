@@ -28,7 +28,7 @@ pub(crate) struct RenderArgs {
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
-    /// Picture to write, .exr or .png; may be repeated [default: <scene>.png in the current folder].
+    /// Picture to write, .exr or .png; may be repeated [default: SCENE.png in the current folder]
     ///
     /// EXR: linear light in floats, every AOV, and the whole job, so that `lightcuts render FILE.exr` renders it again.
     /// PNG: 8 bits for eyes, with the job too.
@@ -49,7 +49,7 @@ pub(crate) struct OutputArgs {
     /// No summary and no progress; warnings and errors only.
     #[arg(short, long)]
     pub(crate) quiet: bool,
-    /// Progress on stderr [default: bar on a terminal, else plain].
+    /// Progress on stderr [default: bar on a terminal, else plain]
     #[arg(long, value_name = "STYLE", value_enum)]
     pub(crate) progress: Option<ProgressStyle>,
 }

@@ -1,6 +1,7 @@
 //! Holds the declarations of the flags against the settings that they set.
 
 use super::{Cli, Command};
+use clap::builder::PossibleValue;
 use clap::{CommandFactory, Parser};
 use lightcuts::Settings;
 use std::collections::BTreeMap;
@@ -55,7 +56,7 @@ fn every_setting_has_one_flag_whose_help_tells_the_default() {
         let flag = arg.get_long().unwrap();
         let choices = arg.get_possible_values();
         let values: Vec<_> =
-            if choices.is_empty() { vec!["1"] } else { choices.iter().map(|v| v.get_name()).collect() };
+            if choices.is_empty() { vec!["1"] } else { choices.iter().map(PossibleValue::get_name).collect() };
         let values = if values == ["true", "false"] { vec!["true"] } else { values };
         for value in &values {
             let set = flags(&[&format!("--{flag}={value}")]);

@@ -21,6 +21,7 @@ impl FromStr for Size {
 }
 
 /// For a flag that switches off what its key switches on.
+#[expect(clippy::ref_option, clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
 pub(super) fn negated<S: Serializer>(flag: &Option<bool>, serializer: S) -> Result<S::Ok, S::Error> {
     match flag {
         Some(flag) => serializer.serialize_some(&!flag),

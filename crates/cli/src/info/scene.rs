@@ -170,14 +170,10 @@ fn texture(scene: &SceneDesc, material: &MaterialDesc) -> Option<Texture> {
 fn bounds(world: &World) -> Option<[[f32; 3]; 2]> {
     let root = world.nodes.first()?;
     let taken = |lane: &usize| root.lower[0][*lane] <= root.upper[0][*lane];
-    let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
-    for lane in (0..root.child.len()).filter(taken) {
-        for axis in 0..3 {
-            bounds[0][axis] = bounds[0][axis].min(root.lower[axis][lane]);
-            bounds[1][axis] = bounds[1][axis].max(root.upper[axis][lane]);
-        }
-    }
-    (bounds[0][0] <= bounds[1][0]).then_some(bounds)
+    let lanes: Vec<usize> = (0..root.child.len()).filter(taken).collect();
+    let lower = root.lower.map(|of_axis| lanes.iter().map(|&lane| of_axis[lane]).fold(f32::INFINITY, f32::min));
+    let upper = root.upper.map(|of_axis| lanes.iter().map(|&lane| of_axis[lane]).fold(f32::NEG_INFINITY, f32::max));
+    (!lanes.is_empty()).then_some([lower, upper])
 }
 
 fn recommended(scene: &SceneDesc) -> Vec<Parameter> {

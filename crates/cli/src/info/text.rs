@@ -33,15 +33,12 @@ pub(super) fn of_scene(info: &SceneInfo) -> String {
 /// Of a picture.
 pub(super) fn of_picture(info: &PictureInfo) -> String {
     let layers: Vec<_> = info.layers.iter().map(|layer| format!("{} ({})", layer.name, layer.kind)).collect();
-    let mut text = line("picture", &info.file)
+    let job = info.job.as_ref().map_or(line("job", "none"), |job| format!("job\n{}\n", indented(job)));
+    line("picture", &info.file)
         + &line("size", &format!("{} x {}", info.width, info.height))
         + &line("layers", &layers.join(", "))
-        + &line("version", info.version.as_deref().unwrap_or("unknown"));
-    match &info.job {
-        Some(job) => text += &format!("job\n{}\n", indented(job)),
-        None => text += &line("job", "none"),
-    }
-    text
+        + &line("version", info.version.as_deref().unwrap_or("unknown"))
+        + &job
 }
 
 fn line(name: &str, value: &str) -> String {

@@ -42,3 +42,14 @@ fn an_interrupted_render_writes_what_there_is() {
         assert!(folder.has("a.png") && folder.text("s.json").contains("\"complete\": false"));
     }
 }
+
+#[test]
+fn a_second_signal_needs_no_patience() {
+    let folder = Folder::new();
+    let (mut child, mut stderr) = slow_render(&folder);
+    signal(&child, "INT");
+    let mut said = String::new();
+    while !said.contains("interrupted") && stderr.read_line(&mut said).unwrap() > 0 {}
+    signal(&child, "TERM");
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{said}");
+}

@@ -64,7 +64,7 @@ fn paths_in_a_job_are_relative_to_it() {
     assert!(folder.job_of("a.exr").starts_with("scene = \"scene.txt\"\nsearch-path = [\"models\"]\n"));
     folder.run("render scene.txt").code(3);
     folder.run("render scene.txt --size 8x8 --search-path models -o b.exr").success();
-    let mut command = folder.command("render scene.txt --size 8x8 -o c.exr");
+    let mut command = folder.command("render scene.txt --size 8x8 -o c.exr -q");
     assert!(command.env("LIGHTCUTS_PATH", folder.at("models")).status().unwrap().success());
     assert!(folder.bytes("a.exr") == folder.bytes("b.exr") && folder.bytes("a.exr") == folder.bytes("c.exr"));
 }

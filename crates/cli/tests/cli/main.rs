@@ -1,5 +1,7 @@
 //! The real binary: what it writes, what it says, how it ends.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
 mod inputs;
 mod interrupt;
 mod jobs;

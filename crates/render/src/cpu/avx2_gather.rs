@@ -4,34 +4,18 @@
 
 use super::avx2_packet::{Packet, any_hits};
 use super::avx2_trace::{Wide3, dot, load, load3, splat3, store, sub};
-use super::gather::{Chosen, PacketStack, Receiver};
+use super::gather::{Candidates, Decisions, Gathered, PacketStack, Receiver};
 use super::tracer::Tracer;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
-use lightcuts_kernel::light_tree::{LANES, VplBlock};
+use lightcuts_kernel::light_tree::{BOUND_MARGIN, LANES, LightNode, VplBlock};
 use lightcuts_kernel::ray::ORIGINAL_EPSILON;
 use std::arch::x86_64::{
-    __m256, _CMP_EQ_OQ, _CMP_GE_OQ, _CMP_GT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps,
-    _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_div_ps, _mm256_max_ps, _mm256_min_ps,
-    _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32, _mm256_setzero_ps,
-    _mm256_sqrt_ps, _mm256_sub_ps,
+    __m256, _CMP_EQ_OQ, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256,
+    _mm256_andnot_ps, _mm256_blendv_ps, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_div_ps,
+    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_epi32, _mm256_set1_ps,
+    _mm256_setr_epi32, _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
-
-/// Lanes whose relevance reaches the threshold; twin of `kernel::light_tree::relevance`.
-#[target_feature(enable = "avx2")]
-pub(super) fn relevant_lanes(block: &VplBlock, point: Vec3, threshold: f32) -> u32 {
-    let from_light = sub(splat3(point), load3(&block.position));
-    let dist_sq = dot(from_light, from_light);
-    let reciprocal = _mm256_div_ps(_mm256_set1_ps(1.0), _mm256_sqrt_ps(dist_sq));
-    let unit = from_light.map(|c| _mm256_mul_ps(c, reciprocal));
-    let cosine = dot(load3(&block.direction), unit);
-    let zero = _mm256_setzero_ps();
-    // With NaN in the first place the maximum is its second operand, as in the plain version.
-    let facing = _mm256_mul_ps(_mm256_max_ps(cosine, zero), load(&block.intensity));
-    let coincident = _mm256_cmp_ps::<_CMP_EQ_OQ>(dist_sq, zero);
-    let relevance = _mm256_andnot_ps(coincident, _mm256_div_ps(facing, dist_sq));
-    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(relevance, _mm256_set1_ps(threshold))) as u32
-}
 
 /// The ends of shadow rays; twin of `kernel::ray::shadow_ray`.
 #[target_feature(enable = "avx2")]
@@ -55,38 +39,106 @@ fn spread(mask: u32) -> __m256 {
     _mm256_castsi256_ps(_mm256_cmpeq_epi32(chosen, bits))
 }
 
+/// Decides for every cluster of a node; twin of `kernel::light_tree::decide`, same bits.
+#[target_feature(enable = "avx2")]
+pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decisions {
+    let (zero, one) = (_mm256_setzero_ps(), _mm256_set1_ps(1.0));
+    let sign_bit = _mm256_set1_ps(-0.0);
+    let point = splat3(point);
+    let (from_upper, from_lower) = (sub(point, load3(&node.upper)), sub(point, load3(&node.lower)));
+    let (mut near_sq, mut far_sq, mut least, mut greatest) = (zero, zero, zero, zero);
+    for axis in 0..3 {
+        let (u, l) = (from_upper[axis], from_lower[axis]);
+        let outside = _mm256_max_ps(_mm256_max_ps(u, _mm256_xor_ps(sign_bit, l)), zero);
+        let farthest = _mm256_max_ps(_mm256_andnot_ps(sign_bit, l), _mm256_andnot_ps(sign_bit, u));
+        near_sq = _mm256_add_ps(near_sq, _mm256_mul_ps(outside, outside));
+        far_sq = _mm256_add_ps(far_sq, _mm256_mul_ps(farthest, farthest));
+        let direction = load(&node.axis[axis]);
+        let (a, b) = (_mm256_mul_ps(direction, u), _mm256_mul_ps(direction, l));
+        least = _mm256_add_ps(least, _mm256_min_ps(a, b));
+        greatest = _mm256_add_ps(greatest, _mm256_max_ps(a, b));
+    }
+    let (near, far) = (_mm256_sqrt_ps(near_sq), _mm256_sqrt_ps(far_sq));
+    let (cos_spread, sin_spread) = (load(&node.cos_spread), load(&node.sin_spread));
+    let cosine = |along, positive, negative| {
+        let distance = _mm256_blendv_ps(negative, positive, _mm256_cmp_ps::<_CMP_GT_OQ>(along, zero));
+        let ratio = _mm256_div_ps(along, distance);
+        // The constant first: a NaN (second) stays one, as in the plain clamp.
+        _mm256_min_ps(one, _mm256_max_ps(_mm256_set1_ps(-1.0), ratio))
+    };
+    let sine = |cosine| _mm256_sqrt_ps(_mm256_sub_ps(one, _mm256_mul_ps(cosine, cosine)));
+    let cos_upper = cosine(greatest, near, far);
+    let turned = _mm256_add_ps(_mm256_mul_ps(cos_upper, cos_spread), _mm256_mul_ps(sine(cos_upper), sin_spread));
+    let upper = _mm256_blendv_ps(one, turned, _mm256_cmp_ps::<_CMP_LT_OQ>(cos_upper, cos_spread));
+    let cos_lower = cosine(least, far, near);
+    let sin_lower = sine(cos_lower);
+    let turned = _mm256_sub_ps(_mm256_mul_ps(cos_lower, cos_spread), _mm256_mul_ps(sin_lower, sin_spread));
+    let sin_sum = _mm256_add_ps(_mm256_mul_ps(sin_lower, cos_spread), _mm256_mul_ps(cos_lower, sin_spread));
+    let lower = _mm256_and_ps(turned, _mm256_cmp_ps::<_CMP_GE_OQ>(sin_sum, zero));
+    let bound = |cosine, intensity: &[f32; LANES], dist_sq| {
+        _mm256_div_ps(_mm256_mul_ps(_mm256_max_ps(cosine, zero), load(intensity)), dist_sq)
+    };
+    let upper = bound(upper, &node.max_intensity, near_sq);
+    let lower = bound(lower, &node.min_intensity, far_sq);
+    let threshold = _mm256_set1_ps(threshold);
+    let reject = _mm256_cmp_ps::<_CMP_LT_OQ>(_mm256_mul_ps(upper, _mm256_set1_ps(1.0 + BOUND_MARGIN)), threshold);
+    let reaches = _mm256_cmp_ps::<_CMP_GE_OQ>(_mm256_mul_ps(lower, _mm256_set1_ps(1.0 - BOUND_MARGIN)), threshold);
+    let accept = _mm256_and_ps(reaches, _mm256_cmp_ps::<_CMP_GT_OQ>(lower, zero));
+    let present = (0..LANES).fold(0, |mask, lane| mask | u32::from(node.block_count[lane] > 0) << lane);
+    let open = present & !(_mm256_movemask_ps(reject) as u32);
+    let accept = open & _mm256_movemask_ps(accept) as u32;
+    Decisions { accept, descend: open & !accept }
+}
+
+/// Lanes whose relevance reaches the threshold; twin of `kernel::light_tree::relevance`, whose cosine is `cos_phi`: seen
+/// from the light or from the point, its arithmetic differs in signs only.
+#[target_feature(enable = "avx2")]
+fn relevant(block: &VplBlock, cos_phi: __m256, dist_sq: __m256, threshold: f32) -> u32 {
+    let zero = _mm256_setzero_ps();
+    // With NaN in the first place the maximum is its second operand, as in the plain version.
+    let facing = _mm256_mul_ps(_mm256_max_ps(cos_phi, zero), load(&block.intensity));
+    let coincident = _mm256_cmp_ps::<_CMP_EQ_OQ>(dist_sq, zero);
+    let relevance = _mm256_andnot_ps(coincident, _mm256_div_ps(facing, dist_sq));
+    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(relevance, _mm256_set1_ps(threshold))) as u32
+}
+
 /// What the chosen VPLs add; twin of `vpl_incidence` and `phong_vpl`.
 #[target_feature(enable = "avx2")]
 pub(super) fn evaluate(
     tracer: &Tracer<'_>,
     blocks: &[VplBlock],
-    chosen: &[Chosen],
+    candidates: &[Candidates],
+    threshold: f32,
     at: &Receiver,
     stack: &mut PacketStack,
-) -> (Vec3, u64) {
+) -> Gathered {
     let zero = _mm256_setzero_ps();
     let one = _mm256_set1_ps(1.0);
     let (point, normal, diffuse) = (splat3(at.point), splat3(at.normal), splat3(at.diffuse));
     let mut sums = [zero; 3];
-    let mut shadow_rays = 0;
-    for chosen in chosen {
-        let block = &blocks[chosen.block as usize];
+    let mut gathered = Gathered { color: Vec3::ZERO, chosen: 0, shadow_rays: 0 };
+    for candidates in candidates {
+        let block = &blocks[candidates.block as usize];
         let to_light = sub(load3(&block.position), point);
-        let reciprocal = _mm256_div_ps(one, _mm256_sqrt_ps(dot(to_light, to_light)));
+        let dist_sq = dot(to_light, to_light);
+        let reciprocal = _mm256_div_ps(one, _mm256_sqrt_ps(dist_sq));
         let unit = to_light.map(|c| _mm256_mul_ps(c, reciprocal));
         let cos_theta = dot(normal, unit);
         let cos_phi = _mm256_sub_ps(zero, dot(load3(&block.direction), unit));
+        let relevant = if candidates.certain { u32::MAX } else { relevant(block, cos_phi, dist_sq, threshold) };
+        let chosen = candidates.lanes & relevant;
+        gathered.chosen += chosen.count_ones();
         let facing =
             _mm256_and_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(cos_theta, zero), _mm256_cmp_ps::<_CMP_GT_OQ>(cos_phi, zero));
-        let candidates = _mm256_movemask_ps(facing) as u32 & chosen.lanes;
-        if candidates == 0 {
+        let facing = _mm256_movemask_ps(facing) as u32 & chosen;
+        if facing == 0 {
             continue;
         }
-        shadow_rays += u64::from(candidates.count_ones());
+        gathered.shadow_rays += u64::from(facing.count_ones());
         let (t_min, t_max) = shadow_ends(tracer.rules, to_light, at.epsilon);
         let packet = Packet { origin: at.point, directions: to_light, t_min, t_max };
-        let hidden = any_hits(&tracer.geometry, &packet, candidates, tracer.rules, stack);
-        let visible = spread(candidates & !hidden);
+        let hidden = any_hits(&tracer.geometry, &packet, facing, tracer.rules, stack);
+        let visible = spread(facing & !hidden);
         let emission = _mm256_mul_ps(load(&block.attenuation), cos_phi);
         let colors = load3(&block.diffuse);
         for channel in 0..3 {
@@ -96,6 +148,6 @@ pub(super) fn evaluate(
         }
     }
     let [r, g, b] = sums.map(|s| store(s));
-    let total = (0..LANES).fold(Vec3::ZERO, |total, lane| total + Vec3::new(r[lane], g[lane], b[lane]));
-    (total, shadow_rays)
+    gathered.color = (0..LANES).fold(Vec3::ZERO, |total, lane| total + Vec3::new(r[lane], g[lane], b[lane]));
+    gathered
 }

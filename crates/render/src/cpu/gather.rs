@@ -4,15 +4,27 @@ use super::Tracer;
 use crate::light_tree::LightTree;
 use crate::stats::TreeVisits;
 use glam::Vec3;
-use lightcuts_kernel::light_tree::{Decision, LANES, VplBlock, decide, relevance};
+use lightcuts_kernel::light_tree::{Decision, LANES, LightNode, VplBlock, decide, relevance};
 use lightcuts_kernel::phong::{phong_vpl, vpl_incidence};
 use lightcuts_kernel::ray::shadow_ray;
 
-/// VPLs of a block that light a point, a bit per lane. Never empty.
+/// VPLs of a block that may light a point, a bit per lane. Never empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Chosen {
+pub(crate) struct Candidates {
     pub(crate) block: u32,
     pub(crate) lanes: u32,
+    /// Whether all of them are chosen; else each is tested when it is evaluated.
+    pub(crate) certain: bool,
+}
+
+/// What a point gathered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Gathered {
+    /// Sum over the chosen VPLs, before the material's E.
+    pub(crate) color: Vec3,
+    /// Number of chosen VPLs.
+    pub(crate) chosen: u32,
+    pub(crate) shadow_rays: u64,
 }
 
 /// A point that gathers light.
@@ -28,76 +40,88 @@ pub(crate) struct Receiver {
 /// Working memory of [`evaluate`]: subtrees still to be visited, each with the rays of a packet that enter it.
 pub(crate) type PacketStack = Vec<(u32, u32)>;
 
-/// Depth of the deepest light tree: it halves up to 2^32 VPLs.
+/// Depth of the deepest light tree: 2^32 VPLs halved are gathered eight at a time, the last levels perhaps fewer.
 const MAX_LEVELS: usize = 34;
 
-/// Appends the VPLs whose relevance for a point reaches the threshold, in tree order: exactly those that testing every
-/// VPL would find.
+/// What to do with the clusters of a node, a bit per lane.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Decisions {
+    pub(crate) accept: u32,
+    pub(crate) descend: u32,
+}
+
+/// Appends the VPLs that may light a point, in tree order. Those whose relevance reaches the threshold, certain or when
+/// tested, are exactly the ones that testing every VPL would find.
 pub(crate) fn select(
     tree: &LightTree,
     avx2: bool,
     point: Vec3,
     threshold: f32,
-    chosen: &mut Vec<Chosen>,
+    candidates: &mut Vec<Candidates>,
 ) -> TreeVisits {
     let mut visits = TreeVisits::default();
-    let mut stack = [0_u32; MAX_LEVELS];
-    let mut size = usize::from(!tree.nodes.is_empty());
+    if tree.nodes.is_empty() {
+        return visits;
+    }
+    // Nodes on the way down, each with what is left to do there.
+    let mut stack = [(0_u32, Decisions::default()); MAX_LEVELS];
+    stack[0] = (0, decide_all(&tree.nodes[0], avx2, point, threshold, &mut visits));
+    let mut size = 1;
     while size > 0 {
-        size -= 1;
-        let index = stack[size];
-        let node = &tree.nodes[index as usize];
-        if node.right == 0 {
-            // Eight exact tests cost no more than the bound of their cluster.
-            visits.lights += u64::from(node.vpl_count);
-            let block = node.first_block;
-            let lanes = tree.lanes(block) & relevant_lanes(&tree.blocks[block as usize], avx2, point, threshold);
-            if lanes != 0 {
-                chosen.push(Chosen { block, lanes });
-            }
+        let (index, left) = &mut stack[size - 1];
+        let pending = left.accept | left.descend;
+        if pending == 0 {
+            size -= 1;
             continue;
         }
-        visits.nodes += 1;
-        match decide(node, point, threshold) {
-            Decision::Reject => {}
-            Decision::Accept => {
-                let range = node.first_block..node.first_block + node.block_count;
-                chosen.extend(range.map(|block| Chosen { block, lanes: tree.lanes(block) }));
-            }
-            Decision::Descend => {
-                stack[size] = node.right;
-                stack[size + 1] = index + 1;
-                size += 2;
-            }
+        let lane = pending.trailing_zeros() as usize;
+        let bit = 1 << lane;
+        let node = &tree.nodes[*index as usize];
+        let certain = left.accept & bit != 0;
+        left.accept &= !bit;
+        left.descend &= !bit;
+        let child = node.node[lane];
+        if !certain && child != 0 {
+            stack[size] = (child, decide_all(&tree.nodes[child as usize], avx2, point, threshold, &mut visits));
+            size += 1;
+            continue;
         }
+        let first = node.first_block[lane];
+        let blocks = first..first + node.block_count[lane];
+        candidates.extend(blocks.map(|block| Candidates { block, lanes: tree.lanes(block), certain }));
+        visits.lights += if certain { 0 } else { u64::from(node.vpl_count[lane]) };
     }
     visits
 }
 
-/// The same VPLs, found by testing every one: the plain version that [`select`] is tested against.
-pub(crate) fn select_exhaustively(
-    tree: &LightTree,
-    point: Vec3,
-    threshold: f32,
-    chosen: &mut Vec<Chosen>,
-) -> TreeVisits {
-    for block in 0..tree.blocks.len() as u32 {
-        let lanes = tree.lanes(block) & relevant_lanes(&tree.blocks[block as usize], false, point, threshold);
-        if lanes != 0 {
-            chosen.push(Chosen { block, lanes });
-        }
+/// Decides for every cluster of a node.
+#[allow(unsafe_code)]
+fn decide_all(node: &LightNode, avx2: bool, point: Vec3, threshold: f32, visits: &mut TreeVisits) -> Decisions {
+    let present = (0..LANES).filter(|&lane| node.block_count[lane] > 0);
+    visits.nodes += present.clone().count() as u64;
+    #[cfg(target_arch = "x86_64")]
+    if avx2 {
+        // SAFETY: `avx2` is set only where the machine has the feature.
+        return unsafe { super::avx2_gather::decide_all(node, point, threshold) };
     }
+    present.fold(Decisions::default(), |mut decisions, lane| {
+        match decide(&node.cluster(lane), point, threshold) {
+            Decision::Reject => {}
+            Decision::Accept => decisions.accept |= 1 << lane,
+            Decision::Descend => decisions.descend |= 1 << lane,
+        }
+        decisions
+    })
+}
+
+/// Every VPL, to be tested when evaluated: the plain version that [`select`] is tested against.
+pub(crate) fn select_exhaustively(tree: &LightTree, candidates: &mut Vec<Candidates>) -> TreeVisits {
+    candidates.extend(tree.every_block(false));
     TreeVisits { lights: tree.vpl_count() as u64, ..TreeVisits::default() }
 }
 
 /// Lanes of a block whose relevance reaches the threshold; empty lanes may be among them.
-#[allow(unsafe_code)]
-fn relevant_lanes(block: &VplBlock, avx2: bool, point: Vec3, threshold: f32) -> u32 {
-    #[cfg(target_arch = "x86_64")]
-    if avx2 {
-        // SAFETY: `avx2` is set only where the machine has the feature.
-        return unsafe { super::avx2_gather::relevant_lanes(block, point, threshold) };
-    }
+pub(crate) fn relevant_lanes(block: &VplBlock, point: Vec3, threshold: f32) -> u32 {
     let reaches = |lane: usize| {
         let vpl = block.vpl(lane);
         relevance(vpl.position, vpl.direction, block.intensity[lane], point) >= threshold
@@ -105,34 +129,39 @@ fn relevant_lanes(block: &VplBlock, avx2: bool, point: Vec3, threshold: f32) -> 
     (0..LANES).filter(|&lane| reaches(lane)).fold(0, |lanes, lane| lanes | 1 << lane)
 }
 
-/// What the chosen VPLs add at a point, before the material's E, and the number of shadow rays.
+/// What the candidates whose relevance reaches the threshold add at a point.
 ///
 /// Lanes are summed apart and then in order, so that SIMD and plain code give the same bits.
 #[allow(unsafe_code)]
 pub(crate) fn evaluate(
     tracer: &Tracer<'_>,
     blocks: &[VplBlock],
-    chosen: &[Chosen],
+    candidates: &[Candidates],
+    threshold: f32,
     at: &Receiver,
     stack: &mut PacketStack,
-) -> (Vec3, u64) {
+) -> Gathered {
     #[cfg(target_arch = "x86_64")]
     if tracer.avx2 {
         // SAFETY: `avx2` is set only where the machine has the feature.
-        return unsafe { super::avx2_gather::evaluate(tracer, blocks, chosen, at, stack) };
+        return unsafe { super::avx2_gather::evaluate(tracer, blocks, candidates, threshold, at, stack) };
     }
     let mut sums = [Vec3::ZERO; LANES];
-    let mut shadow_rays = 0;
-    for Chosen { block, lanes } in chosen {
-        let block = &blocks[*block as usize];
-        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+    let mut gathered = Gathered { color: Vec3::ZERO, chosen: 0, shadow_rays: 0 };
+    for candidates in candidates {
+        let block = &blocks[candidates.block as usize];
+        let relevant = if candidates.certain { u32::MAX } else { relevant_lanes(block, at.point, threshold) };
+        let chosen = candidates.lanes & relevant;
+        gathered.chosen += chosen.count_ones();
+        for lane in (0..LANES).filter(|lane| chosen >> lane & 1 == 1) {
             let vpl = block.vpl(lane);
             let Some(incidence) = vpl_incidence(&vpl, at.point, at.normal) else { continue };
-            shadow_rays += 1;
+            gathered.shadow_rays += 1;
             if !tracer.occluded(&shadow_ray(tracer.rules, at.point, incidence.to_light, at.epsilon)) {
                 sums[lane] += phong_vpl(&vpl, at.diffuse, &incidence);
             }
         }
     }
-    (sums.iter().fold(Vec3::ZERO, |total, &sum| total + sum), shadow_rays)
+    gathered.color = sums.iter().fold(Vec3::ZERO, |total, &sum| total + sum);
+    gathered
 }

@@ -12,7 +12,9 @@ mod avx2_trace;
 mod gather;
 mod tracer;
 
-pub(crate) use gather::{Chosen, PacketStack, Receiver, evaluate, select, select_exhaustively};
+#[cfg(test)]
+pub(crate) use gather::relevant_lanes;
+pub(crate) use gather::{Candidates, PacketStack, Receiver, evaluate, select, select_exhaustively};
 pub(crate) use tracer::Tracer;
 
 /// Whether SIMD instructions are used. Never changes the picture.

@@ -45,7 +45,7 @@ impl<'a> Tracer<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cpu::{Chosen, PacketStack, Receiver, evaluate};
+    use crate::cpu::{Candidates, PacketStack, Receiver, evaluate};
     use crate::light_tree::LightTree;
     use crate::light_tree::tests::scattered;
     use glam::Vec3;
@@ -116,8 +116,7 @@ mod tests {
     #[test]
     fn gathering_is_bit_equal_with_and_without_simd() {
         let tree = LightTree::build(&scattered(203));
-        let all: Vec<Chosen> =
-            (0..tree.blocks.len() as u32).map(|block| Chosen { block, lanes: tree.lanes(block) }).collect();
+        let all: Vec<Candidates> = tree.every_block(true).chain(tree.every_block(false)).collect();
         for scene in ["thesis/simple.txt", "thesis/ship.txt", "gallery/cubes.txt"] {
             let world = world(scene);
             let mut lit = 0;
@@ -131,11 +130,12 @@ mod tests {
                     epsilon: 0.01,
                 };
                 let mut stack = PacketStack::new();
-                let mut gather =
-                    |simd| evaluate(&Tracer::new(world.geometry(), rules, simd), &tree.blocks, &all, &at, &mut stack);
+                let mut gather = |simd| {
+                    evaluate(&Tracer::new(world.geometry(), rules, simd), &tree.blocks, &all, 1e-5, &at, &mut stack)
+                };
                 let (plain, wide) = (gather(Simd::Off), gather(Simd::Auto));
                 assert_eq!(plain, wide, "{scene} at {}", at.point);
-                lit += u32::from(plain.0 != Vec3::ZERO);
+                lit += u32::from(plain.color != Vec3::ZERO);
             }
             assert!(lit > 300, "{scene}: {lit}");
         }

@@ -154,8 +154,9 @@ pub enum FilterKind {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct VplPlacement {
-    /// Nominal probability p that a hit becomes a VPL; the effective one is (floor(p 10^6) + 1) / 32768, about 30.5
-    /// times as much, as in the original. Shared out over the samples of a pixel.
+    /// Nominal probability p that a hit becomes a VPL, for a picture of 512 x 512 pixels of one sample. The effective one
+    /// is (floor(p 10^6) + 1) / 32768, about 30.5 times as much, as in the original; shared out over the camera rays, so
+    /// that the number of VPLs does not depend on the picture's size and samples.
     pub probability: f32,
     /// Least r + g + b of a hit's colour for it to become a VPL.
     pub min_illumination: f32,

@@ -71,7 +71,6 @@ fn threshold_zero_is_plain() {
     }
     for (world, mut settings) in scenes {
         (settings.image.width, settings.image.height) = (192, 192);
-        settings.vpl.probability *= 7.0;
         settings.gather.threshold = 0.0;
         let mut with = |strategy| {
             settings.gather.strategy = strategy;
@@ -120,9 +119,6 @@ fn another_seed_is_another_picture_of_the_same_scene() {
     settings.run.seed = 2;
     let two = run(&world, &settings);
     assert_ne!(one.vpls, two.vpls);
-    let mean = |image: &Image| {
-        image.pixels().iter().flatten().map(|&c| f64::from(c)).sum::<f64>() / (image.pixels().len() * 3) as f64
-    };
     let (a, b) = (mean(&one.first_pass), mean(&two.first_pass));
     assert!((a - b).abs() < 0.01 * a, "{a} {b}");
 }
@@ -182,8 +178,12 @@ fn a_cancelled_render_keeps_what_there_is() {
     }
 }
 
+fn mean(image: &Image) -> f64 {
+    image.pixels().iter().flatten().map(|&c| f64::from(c)).sum::<f64>() / (image.pixels().len() * 3) as f64
+}
+
 #[test]
-fn a_picture_of_another_size_shows_the_same() {
+fn a_wider_picture_shows_the_same_in_its_middle() {
     let (world, mut settings) = scene("thesis/simple.txt", Vec::new());
     settings.vpl.enabled = false;
     (settings.image.width, settings.image.height) = (64, 64);
@@ -193,6 +193,26 @@ fn a_picture_of_another_size_shows_the_same() {
     let wide = run(&world, &settings).beauty;
     let middle = Image::from_fn(64, 64, |x, y| wide.get(x + 32, y));
     assert!(max_abs_difference(&small, &middle).expect("equal sizes") < 0.2);
-    let mean = |image: &Image| image.pixels().iter().flatten().map(|&c| f64::from(c)).sum::<f64>();
     assert!((mean(&small) / mean(&middle) - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn size_and_samples_change_neither_the_number_of_vpls_nor_the_brightness() {
+    let (world, mut settings) = scene("thesis/simple.txt", Vec::new());
+    let mut with = |size: u32, samples: u32| {
+        (settings.image.width, settings.image.height) = (size, size);
+        settings.sampling.samples = samples;
+        let rendering = run(&world, &settings);
+        (rendering.stats.vpl_count as f64, mean(&rendering.second_pass))
+    };
+    let (count, brightness) = with(512, 1);
+    for (size, samples) in [(128, 1), (128, 9), (600, 1)] {
+        let (other_count, other_brightness) = with(size, samples);
+        // About 290 of them: a standard deviation of 17 each.
+        assert!((other_count - count).abs() < 90.0, "{size} {samples}: {other_count} {count}");
+        assert!(
+            (other_brightness / brightness - 1.0).abs() < 0.25,
+            "{size} {samples}: {other_brightness} {brightness}"
+        );
+    }
 }

@@ -18,11 +18,10 @@ fn scene(name: &str, search_paths: Vec<PathBuf>) -> (World, Settings) {
     (world, Settings::for_scene(&imported.scene))
 }
 
-/// A scene of the project for a small picture with more VPLs per pixel, so that small pictures have enough.
+/// A scene of the project for a small picture.
 fn small_scene(name: &str) -> (World, Settings) {
     let (world, mut settings) = scene(name, Vec::new());
     (settings.image.width, settings.image.height) = (96, 80);
-    settings.vpl.probability *= 30.0;
     (world, settings)
 }
 
