@@ -80,7 +80,7 @@ pub struct LightCluster {
     pub node: u32,
 }
 
-/// Up to eight clusters, component by component, in the order of their blocks. Empty lanes have no blocks.
+/// Up to eight clusters, component by component, in the order of their blocks. Empty lanes are zero.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct LightNode {
@@ -100,12 +100,16 @@ pub struct LightNode {
     pub max_intensity: [f32; LANES],
     /// First blocks.
     pub first_block: [u32; LANES],
-    /// Numbers of blocks; 0 for an empty lane.
+    /// Numbers of blocks.
     pub block_count: [u32; LANES],
     /// Numbers of VPLs.
     pub vpl_count: [u32; LANES],
     /// Nodes of the clusters, or 0 for single blocks.
     pub node: [u32; LANES],
+    /// Number of clusters; they stand in the first lanes.
+    pub count: u32,
+    /// Unused; keeps the record a multiple of 16 bytes.
+    pub padding: [u32; 3],
 }
 
 impl LightNode {
@@ -127,8 +131,10 @@ impl LightNode {
         }
     }
 
-    /// Puts a cluster into a lane.
-    pub fn set(&mut self, lane: usize, cluster: &LightCluster) {
+    /// Appends a cluster; there is room for eight.
+    pub fn push(&mut self, cluster: &LightCluster) {
+        let lane = self.count as usize;
+        self.count += 1;
         for axis in 0..3 {
             self.lower[axis][lane] = cluster.lower[axis];
             self.upper[axis][lane] = cluster.upper[axis];

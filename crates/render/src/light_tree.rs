@@ -11,6 +11,9 @@ use lightcuts_kernel::ray::normalize;
 /// decide for 60 % of the blocks of Simple, with 1 for 69 %; at its distances the cosine decides, not the distance.
 const DIRECTION_WEIGHT: f32 = 1.0;
 
+/// All lanes of a block.
+const FULL: u32 = (1 << LANES) - 1;
+
 /// VPLs in blocks, in tree order, and the nodes over them.
 ///
 /// The order does not depend on the gather strategy, so that strategies sum in the same order.
@@ -85,7 +88,7 @@ impl LightTree {
                 let Some([left, right]) = halves[wide[most] as usize].halves else { break };
                 wide.splice(most..=most, [left, right]);
             }
-            for (lane, &index) in wide.iter().enumerate() {
+            for &index in &wide {
                 let half = &halves[index as usize];
                 let node = if half.halves.is_some() {
                     self.nodes.push(bytemuck::Zeroable::zeroed());
@@ -94,7 +97,7 @@ impl LightTree {
                 } else {
                     0
                 };
-                self.nodes[target].set(lane, &LightCluster { node, ..half.cluster });
+                self.nodes[target].push(&LightCluster { node, ..half.cluster });
             }
         }
     }
@@ -109,8 +112,8 @@ impl LightTree {
 
     /// The lanes of a block that hold VPLs, a bit each.
     pub(crate) fn lanes(&self, block: u32) -> u32 {
-        let count = (self.vpl_count - block as usize * LANES).min(LANES);
-        (1 << count) - 1
+        // All but the last block are full.
+        if block as usize + 1 < self.blocks.len() { FULL } else { FULL >> (self.blocks.len() * LANES - self.vpl_count) }
     }
 
     /// Every VPL, block by block.
@@ -217,14 +220,12 @@ pub(crate) mod tests {
 
     /// Every cluster with its VPLs.
     fn clusters(tree: &LightTree) -> Vec<(LightCluster, Vec<Vpl>)> {
-        let all = tree.nodes.iter().flat_map(|node| (0..LANES).map(|lane| node.cluster(lane)));
+        let all = tree.nodes.iter().flat_map(|node| (0..node.count as usize).map(|lane| node.cluster(lane)));
         let vpls = |block: u32| {
             let lanes = (0..LANES).filter(move |lane| tree.lanes(block) >> lane & 1 == 1);
             lanes.map(move |lane| tree.blocks[block as usize].vpl(lane))
         };
-        all.filter(|c| c.block_count > 0)
-            .map(|c| (c, (c.first_block..c.first_block + c.block_count).flat_map(vpls).collect()))
-            .collect()
+        all.map(|c| (c, (c.first_block..c.first_block + c.block_count).flat_map(vpls).collect())).collect()
     }
 
     #[test]
@@ -243,7 +244,7 @@ pub(crate) mod tests {
             }
             let node = &tree.nodes[cluster.node as usize];
             let mut next = cluster.first_block;
-            for part in (0..LANES).map(|lane| node.cluster(lane)).filter(|part| part.block_count > 0) {
+            for part in (0..node.count as usize).map(|lane| node.cluster(lane)) {
                 assert_eq!(part.first_block, next);
                 next += part.block_count;
             }

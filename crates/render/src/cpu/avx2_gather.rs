@@ -84,8 +84,7 @@ pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decis
     let reject = _mm256_cmp_ps::<_CMP_LT_OQ>(_mm256_mul_ps(upper, _mm256_set1_ps(1.0 + BOUND_MARGIN)), threshold);
     let reaches = _mm256_cmp_ps::<_CMP_GE_OQ>(_mm256_mul_ps(lower, _mm256_set1_ps(1.0 - BOUND_MARGIN)), threshold);
     let accept = _mm256_and_ps(reaches, _mm256_cmp_ps::<_CMP_GT_OQ>(lower, zero));
-    let present = (0..LANES).fold(0, |mask, lane| mask | u32::from(node.block_count[lane] > 0) << lane);
-    let open = present & !(_mm256_movemask_ps(reject) as u32);
+    let open = ((1 << node.count) - 1) & !(_mm256_movemask_ps(reject) as u32);
     let accept = open & _mm256_movemask_ps(accept) as u32;
     Decisions { accept, descend: open & !accept }
 }

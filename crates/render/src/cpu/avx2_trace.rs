@@ -11,6 +11,7 @@ use std::arch::x86_64::{
     _mm256_andnot_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
     _mm256_mul_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_storeu_ps, _mm256_sub_ps,
 };
+use std::mem::MaybeUninit;
 
 /// Levels that the any-hit stack can hold; a world's hierarchy is never deeper (`World::validate`).
 const MAX_LEVELS: usize = STACK_SIZE / (LANES - 1);
@@ -143,6 +144,31 @@ impl WideRay {
     }
 }
 
+/// A stack of fixed size that costs nothing to make: clearing its memory would take longer than most traversals.
+struct Stack<T: Copy, const SIZE: usize> {
+    entries: [MaybeUninit<T>; SIZE],
+    size: usize,
+}
+
+impl<T: Copy, const SIZE: usize> Stack<T, SIZE> {
+    const fn new() -> Self {
+        Self { entries: [const { MaybeUninit::uninit() }; SIZE], size: 0 }
+    }
+
+    #[inline]
+    fn push(&mut self, value: T) {
+        self.entries[self.size] = MaybeUninit::new(value);
+        self.size += 1;
+    }
+
+    #[inline]
+    fn pop(&mut self) -> Option<T> {
+        self.size = self.size.checked_sub(1)?;
+        // SAFETY: every entry below the size was written by `push`.
+        Some(unsafe { self.entries[self.size].assume_init() })
+    }
+}
+
 /// Lanes set in a mask, lowest first.
 pub(super) fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
@@ -160,8 +186,7 @@ pub(super) fn any_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> bool 
     }
     let wide = WideRay::new(ray);
     // One entry per level: a node and those of its inner children that are still to be visited.
-    let mut stack = [(0_u32, 0_u32); MAX_LEVELS];
-    let mut size = 0;
+    let mut stack = Stack::<(u32, u32), MAX_LEVELS>::new();
     let mut index = 0_u32;
     loop {
         let node = &geometry.nodes[index as usize];
@@ -177,18 +202,12 @@ pub(super) fn any_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> bool 
             }
         }
         if inner != 0 {
-            stack[size] = (index, inner);
-            size += 1;
+            stack.push((index, inner));
         }
-        if size == 0 {
-            return false;
-        }
-        let (parent, pending) = stack[size - 1];
+        let Some((parent, pending)) = stack.pop() else { return false };
         let rest = pending & (pending - 1);
-        if rest == 0 {
-            size -= 1;
-        } else {
-            stack[size - 1].1 = rest;
+        if rest != 0 {
+            stack.push((parent, rest));
         }
         index = geometry.nodes[parent as usize].child[pending.trailing_zeros() as usize];
     }
@@ -212,11 +231,9 @@ pub(super) fn closest_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> H
         return best;
     }
     let wide = WideRay::new(ray);
-    let mut stack = [(0_u32, 0.0_f32); STACK_SIZE];
-    let mut size = 1;
-    while size > 0 {
-        size -= 1;
-        let (child, entry) = stack[size];
+    let mut stack = Stack::<(u32, f32), STACK_SIZE>::new();
+    stack.push((ChildRef::Node(0).pack(), ray.t_min));
+    while let Some((child, entry)) = stack.pop() {
         if entry > best.t {
             continue;
         }
@@ -225,17 +242,19 @@ pub(super) fn closest_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> H
                 let node = &geometry.nodes[index as usize];
                 let (mask, entries) = wide.enter(node, _mm256_set1_ps(best.t));
                 let entries = store(entries);
-                let base = size;
+                // Sorted, so that the nearest child ends on top of the stack.
+                let mut sorted = [(0, 0.0); LANES];
+                let mut count = 0;
                 for lane in lanes(mask) {
-                    // Insertion sort: the nearest child ends on top of the stack.
-                    let mut place = size;
-                    while place > base && stack[place - 1].1 < entries[lane] {
-                        stack[place] = stack[place - 1];
+                    let mut place = count;
+                    while place > 0 && sorted[place - 1].1 < entries[lane] {
+                        sorted[place] = sorted[place - 1];
                         place -= 1;
                     }
-                    stack[place] = (node.child[lane], entries[lane]);
-                    size += 1;
+                    sorted[place] = (node.child[lane], entries[lane]);
+                    count += 1;
                 }
+                sorted[..count].iter().for_each(|&child| stack.push(child));
             }
             ChildRef::Triangles(index) => {
                 let block = &geometry.triangles[index as usize];

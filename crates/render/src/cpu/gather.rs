@@ -65,46 +65,51 @@ pub(crate) fn select(
     }
     // Nodes on the way down, each with what is left to do there.
     let mut stack = [(0_u32, Decisions::default()); MAX_LEVELS];
-    stack[0] = (0, decide_all(&tree.nodes[0], avx2, point, threshold, &mut visits));
-    let mut size = 1;
-    while size > 0 {
-        let (index, left) = &mut stack[size - 1];
-        let pending = left.accept | left.descend;
-        if pending == 0 {
-            size -= 1;
-            continue;
+    let mut size = 0;
+    let (mut index, mut left) = (0, decide_all(&tree.nodes[0], avx2, point, threshold, &mut visits));
+    loop {
+        let node = &tree.nodes[index as usize];
+        let mut child = 0;
+        let mut pending = left.accept | left.descend;
+        while pending != 0 && child == 0 {
+            let lane = pending.trailing_zeros() as usize;
+            pending &= pending - 1;
+            let certain = left.accept >> lane & 1 == 1;
+            let first = node.first_block[lane];
+            if node.node[lane] == 0 {
+                visits.lights += if certain { 0 } else { u64::from(node.vpl_count[lane]) };
+                candidates.push(Candidates { block: first, lanes: tree.lanes(first), certain });
+            } else if certain {
+                let blocks = first..first + node.block_count[lane];
+                candidates.extend(blocks.map(|block| Candidates { block, lanes: tree.lanes(block), certain }));
+            } else {
+                child = node.node[lane];
+            }
         }
-        let lane = pending.trailing_zeros() as usize;
-        let bit = 1 << lane;
-        let node = &tree.nodes[*index as usize];
-        let certain = left.accept & bit != 0;
-        left.accept &= !bit;
-        left.descend &= !bit;
-        let child = node.node[lane];
-        if !certain && child != 0 {
-            stack[size] = (child, decide_all(&tree.nodes[child as usize], avx2, point, threshold, &mut visits));
+        if child != 0 {
+            stack[size] = (index, Decisions { accept: left.accept & pending, descend: left.descend & pending });
             size += 1;
-            continue;
+            (index, left) = (child, decide_all(&tree.nodes[child as usize], avx2, point, threshold, &mut visits));
+        } else if size > 0 {
+            size -= 1;
+            (index, left) = stack[size];
+        } else {
+            return visits;
         }
-        let first = node.first_block[lane];
-        let blocks = first..first + node.block_count[lane];
-        candidates.extend(blocks.map(|block| Candidates { block, lanes: tree.lanes(block), certain }));
-        visits.lights += if certain { 0 } else { u64::from(node.vpl_count[lane]) };
     }
-    visits
 }
 
 /// Decides for every cluster of a node.
 #[allow(unsafe_code)]
+#[inline]
 fn decide_all(node: &LightNode, avx2: bool, point: Vec3, threshold: f32, visits: &mut TreeVisits) -> Decisions {
-    let present = (0..LANES).filter(|&lane| node.block_count[lane] > 0);
-    visits.nodes += present.clone().count() as u64;
+    visits.nodes += u64::from(node.count);
     #[cfg(target_arch = "x86_64")]
     if avx2 {
         // SAFETY: `avx2` is set only where the machine has the feature.
         return unsafe { super::avx2_gather::decide_all(node, point, threshold) };
     }
-    present.fold(Decisions::default(), |mut decisions, lane| {
+    (0..node.count as usize).fold(Decisions::default(), |mut decisions, lane| {
         match decide(&node.cluster(lane), point, threshold) {
             Decision::Reject => {}
             Decision::Accept => decisions.accept |= 1 << lane,
