@@ -162,13 +162,27 @@ pub fn relevance(position: Vec3, direction: Vec3, intensity: f32, point: Vec3) -
     direction.dot(normalize(from_light)).max(0.0) * intensity / dist_sq
 }
 
-/// Least and greatest relevance that any VPL of a cluster can have for a point, up to [`BOUND_MARGIN`].
+/// Bounds on what the VPLs of a cluster can be worth for a point, up to [`BOUND_MARGIN`]: least and greatest intensity
+/// times cosine at the light, and the squared distances to go with each, farthest and nearest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RelevanceBounds {
+    /// Least intensity times cosine.
+    pub least_flux: f32,
+    /// Greatest intensity times cosine.
+    pub greatest_flux: f32,
+    /// Squared distance of the farthest corner of the box.
+    pub far_sq: f32,
+    /// Squared distance of the box; 0 in it.
+    pub near_sq: f32,
+}
+
+/// Bounds on the relevance of a cluster.
 ///
 /// With v the vectors from the cluster's positions to the point, a box: the cosine between v and the cone's axis lies
 /// between the least and greatest v . axis over the greatest and least |v|; the VPLs' own directions deviate from the
 /// axis by at most the cone's half angle, which widens both without trigonometry (Walter et al. 2005, section 5.3; the
 /// distances are bounded apart from the cosine).
-pub fn relevance_bounds(cluster: &LightCluster, point: Vec3) -> (f32, f32) {
+pub fn relevance_bounds(cluster: &LightCluster, point: Vec3) -> RelevanceBounds {
     let (from_upper, from_lower) = (point - cluster.upper, point - cluster.lower);
     let outside = from_upper.max(-from_lower).max(Vec3::ZERO);
     let farthest = from_lower.abs().max(from_upper.abs());
@@ -178,7 +192,12 @@ pub fn relevance_bounds(cluster: &LightCluster, point: Vec3) -> (f32, f32) {
     let (least, greatest) = (a.min(b).dot(Vec3::ONE), a.max(b).dot(Vec3::ONE));
     let upper = cos_of_difference(least_magnitude(greatest, near, far), cluster.cos_spread, cluster.sin_spread);
     let lower = cos_of_sum(least_magnitude(least, far, near), cluster.cos_spread, cluster.sin_spread);
-    (lower.max(0.0) * cluster.min_intensity / far_sq, upper.max(0.0) * cluster.max_intensity / near_sq)
+    RelevanceBounds {
+        least_flux: lower.max(0.0) * cluster.min_intensity,
+        greatest_flux: upper.max(0.0) * cluster.max_intensity,
+        far_sq,
+        near_sq,
+    }
 }
 
 /// An end of the range of cosines from the same end of the range of v . axis: over one distance where that is
@@ -215,11 +234,11 @@ pub enum Decision {
 
 /// Compares a cluster's bounds with a threshold, leaving [`BOUND_MARGIN`] to the exact test.
 pub fn decide(cluster: &LightCluster, point: Vec3, threshold: f32) -> Decision {
-    let (lower, upper) = relevance_bounds(cluster, point);
+    let bounds = relevance_bounds(cluster, point);
     // Only a true comparison decides: bounds of a point in the box may be NaN.
-    if upper * (1.0 + BOUND_MARGIN) < threshold {
+    if bounds.greatest_flux < threshold * (1.0 - BOUND_MARGIN) * bounds.near_sq {
         Decision::Reject
-    } else if lower * (1.0 - BOUND_MARGIN) >= threshold && lower > 0.0 {
+    } else if bounds.least_flux >= threshold * (1.0 + BOUND_MARGIN) * bounds.far_sq && bounds.least_flux > 0.0 {
         Decision::Accept
     } else {
         Decision::Descend

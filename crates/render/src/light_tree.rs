@@ -42,7 +42,7 @@ impl LightTree {
     }
 
     /// Halves all VPLs, parents before children; fills the blocks. The split axis is the longest of the 6-D box, the
-    /// place the middle, rounded to whole blocks.
+    /// place the middle, rounded to whole units.
     fn halve(&mut self, vpls: &[Vpl]) -> Vec<Half> {
         let (lower, upper) = vpls.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lower, upper), vpl| {
             (lower.min(vpl.position), upper.max(vpl.position))
@@ -73,7 +73,7 @@ impl LightTree {
         tree
     }
 
-    /// Makes nodes of eight clusters: of the ranges at hand the one with most blocks is opened next.
+    /// Makes nodes of up to eight clusters: the ranges of one [`unit`] under each range that is larger than a block.
     fn widen(&mut self, halves: &[Half]) {
         if halves.is_empty() {
             return;
@@ -81,23 +81,23 @@ impl LightTree {
         self.nodes.push(bytemuck::Zeroable::zeroed());
         let mut open = vec![(0_u32, 0_usize)];
         while let Some((root, target)) = open.pop() {
-            let mut wide = vec![root];
-            while wide.len() < LANES {
-                let blocks = |i: &u32| halves[*i as usize].cluster.block_count;
-                let most = (0..wide.len()).rev().max_by_key(|&place| blocks(&wide[place])).expect("at least the root");
-                let Some([left, right]) = halves[wide[most] as usize].halves else { break };
-                wide.splice(most..=most, [left, right]);
-            }
-            for &index in &wide {
-                let half = &halves[index as usize];
-                let node = if half.halves.is_some() {
+            let unit = unit(halves[root as usize].cluster.vpl_count as usize);
+            let mut ranges = vec![root];
+            while let Some(index) = ranges.pop() {
+                let Half { cluster, halves } = &halves[index as usize];
+                if let Some([left, right]) = *halves
+                    && cluster.vpl_count as usize > unit
+                {
+                    ranges.extend([right, left]);
+                    continue;
+                }
+                let mut node = 0;
+                if halves.is_some() {
                     self.nodes.push(bytemuck::Zeroable::zeroed());
-                    open.push((index, self.nodes.len() - 1));
-                    self.nodes.len() as u32 - 1
-                } else {
-                    0
-                };
-                self.nodes[target].push(&LightCluster { node, ..half.cluster });
+                    node = self.nodes.len() as u32 - 1;
+                    open.push((index, node as usize));
+                }
+                self.nodes[target].push(&LightCluster { node, ..*cluster });
             }
         }
     }
@@ -126,6 +126,16 @@ impl LightTree {
     }
 }
 
+/// Size of the ranges that a range of VPLs is made of: the largest power of eight below its length, at least a block. So
+/// nodes are full, but for the last of each level.
+fn unit(vpls: usize) -> usize {
+    let mut unit = LANES;
+    while unit * LANES < vpls {
+        unit *= LANES;
+    }
+    unit
+}
+
 /// Reorders a range by its longest 6-D axis and returns where to split it.
 fn split(vpls: &[Vpl], range: &mut [u32], weight: f32) -> usize {
     let key = |index: u32, axis: usize| {
@@ -138,7 +148,9 @@ fn split(vpls: &[Vpl], range: &mut [u32], weight: f32) -> usize {
         greatest - least
     };
     let axis = (0..6).max_by(|&a, &b| extent(a).total_cmp(&extent(b)).then(b.cmp(&a))).expect("six axes");
-    let middle = range.len().div_ceil(2).next_multiple_of(LANES).min((range.len() - 1) / LANES * LANES);
+    // The middle, rounded to whole units; a range larger than a unit holds at least one.
+    let unit = unit(range.len());
+    let middle = ((range.len() + unit) / (2 * unit)).max(1) * unit;
     range.select_nth_unstable_by(middle, |&a, &b| key(a, axis).total_cmp(&key(b, axis)).then(a.cmp(&b)));
     middle
 }
@@ -262,16 +274,14 @@ pub(crate) mod tests {
             let [a, b, c, _] = random4(sample, 5, 0, 3);
             let point = (Vec3::new(a, b, c) - 0.5) * 420.0;
             for (cluster, vpls) in &clusters {
-                let (lower, upper) = relevance_bounds(cluster, point);
-                decided += u32::from(lower > 0.0 || upper == 0.0);
+                let bounds = relevance_bounds(cluster, point);
+                let (least, greatest) = (bounds.least_flux / bounds.far_sq, bounds.greatest_flux / bounds.near_sq);
+                decided += u32::from(least > 0.0 || greatest == 0.0);
                 for vpl in vpls {
                     let exact = relevance(vpl.position, vpl.direction, vpl.intensity(), point);
                     // A bound that is NaN decides nothing.
-                    assert!(
-                        exact <= upper * (1.0 + BOUND_MARGIN) + f32::MIN_POSITIVE || upper.is_nan(),
-                        "{exact} {upper}"
-                    );
-                    assert!(exact >= lower * (1.0 - BOUND_MARGIN) || lower.is_nan(), "{exact} {lower}");
+                    assert!(exact <= greatest * (1.0 + BOUND_MARGIN) || greatest.is_nan(), "{exact} {greatest}");
+                    assert!(exact >= least * (1.0 - BOUND_MARGIN) || least.is_nan(), "{exact} {least}");
                 }
             }
         }

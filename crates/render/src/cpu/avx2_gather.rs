@@ -75,14 +75,11 @@ pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decis
     let turned = _mm256_sub_ps(_mm256_mul_ps(cos_lower, cos_spread), _mm256_mul_ps(sin_lower, sin_spread));
     let sin_sum = _mm256_add_ps(_mm256_mul_ps(sin_lower, cos_spread), _mm256_mul_ps(cos_lower, sin_spread));
     let lower = _mm256_and_ps(turned, _mm256_cmp_ps::<_CMP_GE_OQ>(sin_sum, zero));
-    let bound = |cosine, intensity: &[f32; LANES], dist_sq| {
-        _mm256_div_ps(_mm256_mul_ps(_mm256_max_ps(cosine, zero), load(intensity)), dist_sq)
-    };
-    let upper = bound(upper, &node.max_intensity, near_sq);
-    let lower = bound(lower, &node.min_intensity, far_sq);
-    let threshold = _mm256_set1_ps(threshold);
-    let reject = _mm256_cmp_ps::<_CMP_LT_OQ>(_mm256_mul_ps(upper, _mm256_set1_ps(1.0 + BOUND_MARGIN)), threshold);
-    let reaches = _mm256_cmp_ps::<_CMP_GE_OQ>(_mm256_mul_ps(lower, _mm256_set1_ps(1.0 - BOUND_MARGIN)), threshold);
+    let flux = |cosine, intensity| _mm256_mul_ps(_mm256_max_ps(cosine, zero), intensity);
+    let (upper, lower) = (flux(upper, load(&node.max_intensity)), flux(lower, load(&node.min_intensity)));
+    let limit = |margin: f32, dist_sq| _mm256_mul_ps(_mm256_set1_ps(threshold * margin), dist_sq);
+    let reject = _mm256_cmp_ps::<_CMP_LT_OQ>(upper, limit(1.0 - BOUND_MARGIN, near_sq));
+    let reaches = _mm256_cmp_ps::<_CMP_GE_OQ>(lower, limit(1.0 + BOUND_MARGIN, far_sq));
     let accept = _mm256_and_ps(reaches, _mm256_cmp_ps::<_CMP_GT_OQ>(lower, zero));
     let open = ((1 << node.count) - 1) & !(_mm256_movemask_ps(reject) as u32);
     let accept = open & _mm256_movemask_ps(accept) as u32;

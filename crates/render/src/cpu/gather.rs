@@ -69,6 +69,10 @@ pub(crate) fn select(
     let (mut index, mut left) = (0, decide_all(&tree.nodes[0], avx2, point, threshold, &mut visits));
     loop {
         let node = &tree.nodes[index as usize];
+        if node.node[0] == 0 {
+            take_blocks(tree, node, left, candidates, &mut visits);
+            left = Decisions::default();
+        }
         let mut child = 0;
         let mut pending = left.accept | left.descend;
         while pending != 0 && child == 0 {
@@ -97,6 +101,27 @@ pub(crate) fn select(
             return visits;
         }
     }
+}
+
+/// Takes the accepted and the undecided blocks of a node that has only blocks, without a branch per block: which are
+/// taken is hard to predict.
+fn take_blocks(
+    tree: &LightTree,
+    node: &LightNode,
+    decisions: Decisions,
+    candidates: &mut Vec<Candidates>,
+    visits: &mut TreeVisits,
+) {
+    let mut taken = [Candidates { block: 0, lanes: 0, certain: false }; LANES];
+    let mut count = 0;
+    for lane in 0..node.count as usize {
+        let (accept, descend) = (decisions.accept >> lane & 1, decisions.descend >> lane & 1);
+        let block = node.first_block[lane];
+        taken[count] = Candidates { block, lanes: tree.lanes(block), certain: accept == 1 };
+        count += (accept | descend) as usize;
+        visits.lights += u64::from(node.vpl_count[lane] * descend);
+    }
+    candidates.extend_from_slice(&taken[..count]);
 }
 
 /// Decides for every cluster of a node.
