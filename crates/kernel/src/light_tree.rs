@@ -9,7 +9,7 @@ use glam::Vec3;
 pub const LANES: usize = 8;
 
 /// Relative margin by which a bound must miss the threshold before it decides for a whole cluster: above the rounding
-/// error of the bounds and of [`relevance`] together.
+/// error of the bounds and of [`is_relevant`] together.
 pub const BOUND_MARGIN: f32 = 1e-3;
 
 /// Eight VPLs, component by component, in tree order. Empty lanes are black and attenuated to nothing.
@@ -66,7 +66,7 @@ pub struct LightCluster {
     pub cos_spread: f32,
     /// Sine of the cone's half angle.
     pub sin_spread: f32,
-    /// Least intensity.
+    /// Least intensity; 0 where the cone is wider than a hemisphere, so that nothing can be said of its least cosine.
     pub min_intensity: f32,
     /// Greatest intensity.
     pub max_intensity: f32,
@@ -151,74 +151,53 @@ impl LightNode {
     }
 }
 
-/// The thesis' relevance of a VPL for a point (Eq. 4.2): cosine at the light times intensity over squared distance.
-/// Zero where the point coincides with the light.
-pub fn relevance(position: Vec3, direction: Vec3, intensity: f32, point: Vec3) -> f32 {
-    let from_light = point - position;
-    let dist_sq = from_light.dot(from_light);
-    if dist_sq == 0.0 {
-        return 0.0;
-    }
-    direction.dot(normalize(from_light)).max(0.0) * intensity / dist_sq
+/// Whether the thesis' relevance of a VPL for a point (Eq. 4.2), cosine at the light times intensity over squared
+/// distance, reaches a threshold. A point that coincides with the light is always reached.
+pub fn is_relevant(vpl: &Vpl, intensity: f32, point: Vec3, threshold: f32) -> bool {
+    let to_light = vpl.position - point;
+    // Without a division: this is asked for every VPL that bounds cannot decide about.
+    (-vpl.direction.dot(normalize(to_light))).max(0.0) * intensity >= threshold * to_light.dot(to_light)
 }
 
-/// Bounds on what the VPLs of a cluster can be worth for a point, up to [`BOUND_MARGIN`]: least and greatest intensity
-/// times cosine at the light, and the squared distances to go with each, farthest and nearest.
+/// Bounds on the relevance of a cluster's VPLs for a point, up to [`BOUND_MARGIN`], as fractions without the division:
+/// flux is intensity times cosine at the light times a distance, volume the cube of distance that goes with it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RelevanceBounds {
-    /// Least intensity times cosine.
+    /// Numerator of the lower bound; not above 0 where there is none.
     pub least_flux: f32,
-    /// Greatest intensity times cosine.
+    /// Denominator of the lower bound.
+    pub greatest_volume: f32,
+    /// Numerator of the upper bound, at least 0.
     pub greatest_flux: f32,
-    /// Squared distance of the farthest corner of the box.
-    pub far_sq: f32,
-    /// Squared distance of the box; 0 in it.
-    pub near_sq: f32,
+    /// Denominator of the upper bound; 0 for a point in the cluster's box.
+    pub least_volume: f32,
 }
 
 /// Bounds on the relevance of a cluster.
 ///
-/// With v the vectors from the cluster's positions to the point, a box: the cosine between v and the cone's axis lies
-/// between the least and greatest v . axis over the greatest and least |v|; the VPLs' own directions deviate from the
-/// axis by at most the cone's half angle, which widens both without trigonometry (Walter et al. 2005, section 5.3; the
-/// distances are bounded apart from the cosine).
+/// With v the vectors from the cluster's positions to the point, a box, and a the angle between v and the cone's axis:
+/// |v| cos a = v . axis lies between its values at two corners, |v| between the distances of the nearest and the
+/// farthest point. The VPLs' own directions deviate from the axis by at most the cone's half angle s, so the cosine at
+/// the light is at most cos(a - s) <= cos a cos s + sin s and at least cos(a + s) >= cos a cos s - sin s (Walter et al.
+/// 2005, section 5.3; sin a is bounded by 1, which costs little where a decision is near, at grazing angles, and saves
+/// two square roots).
 pub fn relevance_bounds(cluster: &LightCluster, point: Vec3) -> RelevanceBounds {
     let (from_upper, from_lower) = (point - cluster.upper, point - cluster.lower);
     let outside = from_upper.max(-from_lower).max(Vec3::ZERO);
     let farthest = from_lower.abs().max(from_upper.abs());
     let (near_sq, far_sq) = (outside.dot(outside), farthest.dot(farthest));
-    let (near, far) = (near_sq.sqrt(), far_sq.sqrt());
     let (a, b) = (cluster.axis * from_upper, cluster.axis * from_lower);
     let (least, greatest) = (a.min(b).dot(Vec3::ONE), a.max(b).dot(Vec3::ONE));
-    let upper = cos_of_difference(least_magnitude(greatest, near, far), cluster.cos_spread, cluster.sin_spread);
-    let lower = cos_of_sum(least_magnitude(least, far, near), cluster.cos_spread, cluster.sin_spread);
+    // The greatest cosine is over the least distance where it is positive, over the greatest where it is not.
+    let (far, near) = (far_sq.sqrt(), if greatest > 0.0 { near_sq } else { far_sq }.sqrt());
+    let faced = greatest >= near * cluster.cos_spread;
+    let widened = (greatest * cluster.cos_spread + near * cluster.sin_spread).min(near);
     RelevanceBounds {
-        least_flux: lower.max(0.0) * cluster.min_intensity,
-        greatest_flux: upper.max(0.0) * cluster.max_intensity,
-        far_sq,
-        near_sq,
+        least_flux: (least * cluster.cos_spread - far * cluster.sin_spread) * cluster.min_intensity,
+        greatest_volume: far_sq * far,
+        greatest_flux: if faced { near } else { widened.max(0.0) } * cluster.max_intensity,
+        least_volume: near_sq * near,
     }
-}
-
-/// An end of the range of cosines from the same end of the range of v . axis: over one distance where that is
-/// positive, over the other where it is negative. From -1 to 1.
-fn least_magnitude(along: f32, positive: f32, negative: f32) -> f32 {
-    (along / if along > 0.0 { positive } else { negative }).clamp(-1.0, 1.0)
-}
-
-/// Cosine of the sum of two angles, the first given by its cosine; -1 past half a turn.
-fn cos_of_sum(cosine: f32, cos_spread: f32, sin_spread: f32) -> f32 {
-    let sine = (1.0 - cosine * cosine).sqrt();
-    // The sum stays below half a turn if and only if its sine is positive.
-    let below = sine * cos_spread + cosine * sin_spread >= 0.0;
-    if below { cosine * cos_spread - sine * sin_spread } else { -1.0 }
-}
-
-/// Cosine of the first angle less the second; 1 where the second is larger, and for a point in the box, which may be
-/// faced whatever the cosine (0/0).
-fn cos_of_difference(cosine: f32, cos_spread: f32, sin_spread: f32) -> f32 {
-    let sine = (1.0 - cosine * cosine).sqrt();
-    if cosine < cos_spread { cosine * cos_spread + sine * sin_spread } else { 1.0 }
 }
 
 /// What a traversal does with a cluster.
@@ -235,10 +214,10 @@ pub enum Decision {
 /// Compares a cluster's bounds with a threshold, leaving [`BOUND_MARGIN`] to the exact test.
 pub fn decide(cluster: &LightCluster, point: Vec3, threshold: f32) -> Decision {
     let bounds = relevance_bounds(cluster, point);
-    // Only a true comparison decides: bounds of a point in the box may be NaN.
-    if bounds.greatest_flux < threshold * (1.0 - BOUND_MARGIN) * bounds.near_sq {
+    if bounds.greatest_flux < threshold * (1.0 - BOUND_MARGIN) * bounds.least_volume {
         Decision::Reject
-    } else if bounds.least_flux >= threshold * (1.0 + BOUND_MARGIN) * bounds.far_sq && bounds.least_flux > 0.0 {
+    } else if bounds.least_flux >= threshold * (1.0 + BOUND_MARGIN) * bounds.greatest_volume && bounds.least_flux > 0.0
+    {
         Decision::Accept
     } else {
         Decision::Descend

@@ -12,7 +12,7 @@ use lightcuts_kernel::ray::normalize;
 const DIRECTION_WEIGHT: f32 = 1.0;
 
 /// All lanes of a block.
-const FULL: u32 = (1 << LANES) - 1;
+const FULL: u8 = u8::MAX;
 
 /// VPLs in blocks, in tree order, and the nodes over them.
 ///
@@ -111,7 +111,7 @@ impl LightTree {
     }
 
     /// The lanes of a block that hold VPLs, a bit each.
-    pub(crate) fn lanes(&self, block: u32) -> u32 {
+    pub(crate) fn lanes(&self, block: u32) -> u8 {
         // All but the last block are full.
         if block as usize + 1 < self.blocks.len() { FULL } else { FULL >> (self.blocks.len() * LANES - self.vpl_count) }
     }
@@ -168,7 +168,7 @@ fn cluster(vpls: &[Vpl], range: &[u32], first_block: u32) -> LightCluster {
         axis,
         cos_spread,
         sin_spread: (1.0 - cos_spread * cos_spread).max(0.0).sqrt(),
-        min_intensity: of().map(Vpl::intensity).fold(f32::INFINITY, f32::min),
+        min_intensity: if cos_spread > 0.0 { of().map(Vpl::intensity).fold(f32::INFINITY, f32::min) } else { 0.0 },
         max_intensity: of().map(Vpl::intensity).fold(0.0, f32::max),
         first_block,
         block_count: range.len().div_ceil(LANES) as u32,
@@ -181,7 +181,6 @@ fn cluster(vpls: &[Vpl], range: &[u32], first_block: u32) -> LightCluster {
 pub(crate) mod tests {
     use super::*;
     use crate::cpu::{Simd, relevant_lanes, select, select_exhaustively};
-    use lightcuts_kernel::light_tree::relevance;
     use lightcuts_kernel::rng::random4;
 
     /// VPLs on the walls of a box and on a sphere in it.
@@ -275,10 +274,13 @@ pub(crate) mod tests {
             let point = (Vec3::new(a, b, c) - 0.5) * 420.0;
             for (cluster, vpls) in &clusters {
                 let bounds = relevance_bounds(cluster, point);
-                let (least, greatest) = (bounds.least_flux / bounds.far_sq, bounds.greatest_flux / bounds.near_sq);
+                let least = (bounds.least_flux / bounds.greatest_volume).max(0.0);
+                let greatest = bounds.greatest_flux / bounds.least_volume;
                 decided += u32::from(least > 0.0 || greatest == 0.0);
                 for vpl in vpls {
-                    let exact = relevance(vpl.position, vpl.direction, vpl.intensity(), point);
+                    let to_point = point - vpl.position;
+                    let cosine = vpl.direction.dot(normalize(to_point)).max(0.0);
+                    let exact = cosine * vpl.intensity() / to_point.length_squared();
                     // A bound that is NaN decides nothing.
                     assert!(exact <= greatest * (1.0 + BOUND_MARGIN) || greatest.is_nan(), "{exact} {greatest}");
                     assert!(exact >= least * (1.0 - BOUND_MARGIN) || least.is_nan(), "{exact} {least}");
@@ -292,8 +294,8 @@ pub(crate) mod tests {
     /// The chosen lanes of each block that has any.
     pub(crate) fn chosen(tree: &LightTree, candidates: &[Candidates], point: Vec3, threshold: f32) -> Vec<(u32, u32)> {
         let lanes = |c: &Candidates| {
-            c.lanes
-                & if c.certain { u32::MAX } else { relevant_lanes(&tree.blocks[c.block as usize], point, threshold) }
+            let tested = relevant_lanes(&tree.blocks[c.block as usize], point, threshold);
+            u32::from(c.lanes) & if c.certain { u32::MAX } else { tested }
         };
         candidates.iter().map(|c| (c.block, lanes(c))).filter(|&(_, lanes)| lanes != 0).collect()
     }

@@ -153,9 +153,12 @@ impl<'a> Shader<'a> {
             Strategy::Lightcuts => select(tree, self.tracer.avx2, point, vpls.threshold, candidates),
             Strategy::LightcutsExhaustive => select_exhaustively(tree, candidates),
         };
-        let candidates = if vpls.strategy == Strategy::All { vpls.all } else { &self.candidates };
+        let (candidates, threshold) = match vpls.strategy {
+            Strategy::All => (vpls.all, None),
+            _ => (self.candidates.as_slice(), Some(vpls.threshold)),
+        };
         let receiver = Receiver { point, normal: surface.normal, diffuse: material.diffuse, epsilon: *epsilon };
-        let gathered = evaluate(&self.tracer, &tree.blocks, candidates, vpls.threshold, &receiver, &mut self.stack);
+        let gathered = evaluate(&self.tracer, &tree.blocks, candidates, threshold, &receiver, &mut self.stack);
         self.visits.add(&TreeVisits { shaded_hits: 1, selected: u64::from(gathered.chosen), ..visits });
         self.selected.push(gathered.chosen);
         self.rays.shadow += gathered.shadow_rays;

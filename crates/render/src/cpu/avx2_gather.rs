@@ -11,10 +11,10 @@ use lightcuts_kernel::Rules;
 use lightcuts_kernel::light_tree::{BOUND_MARGIN, LANES, LightNode, VplBlock};
 use lightcuts_kernel::ray::ORIGINAL_EPSILON;
 use std::arch::x86_64::{
-    __m256, _CMP_EQ_OQ, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256,
-    _mm256_andnot_ps, _mm256_blendv_ps, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_div_ps,
-    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_epi32, _mm256_set1_ps,
-    _mm256_setr_epi32, _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps, _mm256_xor_ps,
+    __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps,
+    _mm256_blendv_ps, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_div_ps, _mm256_max_ps,
+    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32,
+    _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
 
 /// The ends of shadow rays; twin of `kernel::ray::shadow_ray`.
@@ -42,7 +42,7 @@ fn spread(mask: u32) -> __m256 {
 /// Decides for every cluster of a node; twin of `kernel::light_tree::decide`, same bits.
 #[target_feature(enable = "avx2")]
 pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decisions {
-    let (zero, one) = (_mm256_setzero_ps(), _mm256_set1_ps(1.0));
+    let zero = _mm256_setzero_ps();
     let sign_bit = _mm256_set1_ps(-0.0);
     let point = splat3(point);
     let (from_upper, from_lower) = (sub(point, load3(&node.upper)), sub(point, load3(&node.lower)));
@@ -58,44 +58,32 @@ pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decis
         least = _mm256_add_ps(least, _mm256_min_ps(a, b));
         greatest = _mm256_add_ps(greatest, _mm256_max_ps(a, b));
     }
-    let (near, far) = (_mm256_sqrt_ps(near_sq), _mm256_sqrt_ps(far_sq));
+    let far = _mm256_sqrt_ps(far_sq);
+    let near = _mm256_sqrt_ps(_mm256_blendv_ps(far_sq, near_sq, _mm256_cmp_ps::<_CMP_GT_OQ>(greatest, zero)));
     let (cos_spread, sin_spread) = (load(&node.cos_spread), load(&node.sin_spread));
-    let cosine = |along, positive, negative| {
-        let distance = _mm256_blendv_ps(negative, positive, _mm256_cmp_ps::<_CMP_GT_OQ>(along, zero));
-        let ratio = _mm256_div_ps(along, distance);
-        // The constant first: a NaN (second) stays one, as in the plain clamp.
-        _mm256_min_ps(one, _mm256_max_ps(_mm256_set1_ps(-1.0), ratio))
-    };
-    let sine = |cosine| _mm256_sqrt_ps(_mm256_sub_ps(one, _mm256_mul_ps(cosine, cosine)));
-    let cos_upper = cosine(greatest, near, far);
-    let turned = _mm256_add_ps(_mm256_mul_ps(cos_upper, cos_spread), _mm256_mul_ps(sine(cos_upper), sin_spread));
-    let upper = _mm256_blendv_ps(one, turned, _mm256_cmp_ps::<_CMP_LT_OQ>(cos_upper, cos_spread));
-    let cos_lower = cosine(least, far, near);
-    let sin_lower = sine(cos_lower);
-    let turned = _mm256_sub_ps(_mm256_mul_ps(cos_lower, cos_spread), _mm256_mul_ps(sin_lower, sin_spread));
-    let sin_sum = _mm256_add_ps(_mm256_mul_ps(sin_lower, cos_spread), _mm256_mul_ps(cos_lower, sin_spread));
-    let lower = _mm256_and_ps(turned, _mm256_cmp_ps::<_CMP_GE_OQ>(sin_sum, zero));
-    let flux = |cosine, intensity| _mm256_mul_ps(_mm256_max_ps(cosine, zero), intensity);
-    let (upper, lower) = (flux(upper, load(&node.max_intensity)), flux(lower, load(&node.min_intensity)));
-    let limit = |margin: f32, dist_sq| _mm256_mul_ps(_mm256_set1_ps(threshold * margin), dist_sq);
-    let reject = _mm256_cmp_ps::<_CMP_LT_OQ>(upper, limit(1.0 - BOUND_MARGIN, near_sq));
-    let reaches = _mm256_cmp_ps::<_CMP_GE_OQ>(lower, limit(1.0 + BOUND_MARGIN, far_sq));
-    let accept = _mm256_and_ps(reaches, _mm256_cmp_ps::<_CMP_GT_OQ>(lower, zero));
+    let faced = _mm256_cmp_ps::<_CMP_GE_OQ>(greatest, _mm256_mul_ps(near, cos_spread));
+    let widened = _mm256_add_ps(_mm256_mul_ps(greatest, cos_spread), _mm256_mul_ps(near, sin_spread));
+    let widened = _mm256_max_ps(_mm256_min_ps(widened, near), zero);
+    let greatest_flux = _mm256_mul_ps(_mm256_blendv_ps(widened, near, faced), load(&node.max_intensity));
+    let narrowed = _mm256_sub_ps(_mm256_mul_ps(least, cos_spread), _mm256_mul_ps(far, sin_spread));
+    let least_flux = _mm256_mul_ps(narrowed, load(&node.min_intensity));
+    let limit =
+        |margin: f32, dist_sq, dist| _mm256_mul_ps(_mm256_set1_ps(threshold * margin), _mm256_mul_ps(dist_sq, dist));
+    let reject = _mm256_cmp_ps::<_CMP_LT_OQ>(greatest_flux, limit(1.0 - BOUND_MARGIN, near_sq, near));
+    let reaches = _mm256_cmp_ps::<_CMP_GE_OQ>(least_flux, limit(1.0 + BOUND_MARGIN, far_sq, far));
+    let accept = _mm256_and_ps(reaches, _mm256_cmp_ps::<_CMP_GT_OQ>(least_flux, zero));
     let open = ((1 << node.count) - 1) & !(_mm256_movemask_ps(reject) as u32);
     let accept = open & _mm256_movemask_ps(accept) as u32;
     Decisions { accept, descend: open & !accept }
 }
 
-/// Lanes whose relevance reaches the threshold; twin of `kernel::light_tree::relevance`, whose cosine is `cos_phi`: seen
-/// from the light or from the point, its arithmetic differs in signs only.
+/// Lanes whose relevance reaches the threshold; twin of `kernel::light_tree::is_relevant`.
 #[target_feature(enable = "avx2")]
 fn relevant(block: &VplBlock, cos_phi: __m256, dist_sq: __m256, threshold: f32) -> u32 {
-    let zero = _mm256_setzero_ps();
     // With NaN in the first place the maximum is its second operand, as in the plain version.
-    let facing = _mm256_mul_ps(_mm256_max_ps(cos_phi, zero), load(&block.intensity));
-    let coincident = _mm256_cmp_ps::<_CMP_EQ_OQ>(dist_sq, zero);
-    let relevance = _mm256_andnot_ps(coincident, _mm256_div_ps(facing, dist_sq));
-    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(relevance, _mm256_set1_ps(threshold))) as u32
+    let flux = _mm256_mul_ps(_mm256_max_ps(cos_phi, _mm256_setzero_ps()), load(&block.intensity));
+    let needed = _mm256_mul_ps(_mm256_set1_ps(threshold), dist_sq);
+    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(flux, needed)) as u32
 }
 
 /// What the chosen VPLs add; twin of `vpl_incidence` and `phong_vpl`.
@@ -104,7 +92,7 @@ pub(super) fn evaluate(
     tracer: &Tracer<'_>,
     blocks: &[VplBlock],
     candidates: &[Candidates],
-    threshold: f32,
+    threshold: Option<f32>,
     at: &Receiver,
     stack: &mut PacketStack,
 ) -> Gathered {
@@ -121,8 +109,11 @@ pub(super) fn evaluate(
         let unit = to_light.map(|c| _mm256_mul_ps(c, reciprocal));
         let cos_theta = dot(normal, unit);
         let cos_phi = _mm256_sub_ps(zero, dot(load3(&block.direction), unit));
-        let relevant = if candidates.certain { u32::MAX } else { relevant(block, cos_phi, dist_sq, threshold) };
-        let chosen = candidates.lanes & relevant;
+        let relevant = match threshold {
+            Some(threshold) if !candidates.certain => relevant(block, cos_phi, dist_sq, threshold),
+            _ => u32::MAX,
+        };
+        let chosen = u32::from(candidates.lanes) & relevant;
         gathered.chosen += chosen.count_ones();
         let facing =
             _mm256_and_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(cos_theta, zero), _mm256_cmp_ps::<_CMP_GT_OQ>(cos_phi, zero));

@@ -4,7 +4,7 @@ use super::Tracer;
 use crate::light_tree::LightTree;
 use crate::stats::TreeVisits;
 use glam::Vec3;
-use lightcuts_kernel::light_tree::{Decision, LANES, LightNode, VplBlock, decide, relevance};
+use lightcuts_kernel::light_tree::{Decision, LANES, LightNode, VplBlock, decide, is_relevant};
 use lightcuts_kernel::phong::{phong_vpl, vpl_incidence};
 use lightcuts_kernel::ray::shadow_ray;
 
@@ -12,7 +12,7 @@ use lightcuts_kernel::ray::shadow_ray;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Candidates {
     pub(crate) block: u32,
-    pub(crate) lanes: u32,
+    pub(crate) lanes: u8,
     /// Whether all of them are chosen; else each is tested when it is evaluated.
     pub(crate) certain: bool,
 }
@@ -121,7 +121,10 @@ fn take_blocks(
         count += (accept | descend) as usize;
         visits.lights += u64::from(node.vpl_count[lane] * descend);
     }
-    candidates.extend_from_slice(&taken[..count]);
+    // A copy of known size, cut to its length, is quicker than one of unknown size.
+    let length = candidates.len() + count;
+    candidates.extend_from_slice(&taken);
+    candidates.truncate(length);
 }
 
 /// Decides for every cluster of a node.
@@ -152,14 +155,11 @@ pub(crate) fn select_exhaustively(tree: &LightTree, candidates: &mut Vec<Candida
 
 /// Lanes of a block whose relevance reaches the threshold; empty lanes may be among them.
 pub(crate) fn relevant_lanes(block: &VplBlock, point: Vec3, threshold: f32) -> u32 {
-    let reaches = |lane: usize| {
-        let vpl = block.vpl(lane);
-        relevance(vpl.position, vpl.direction, block.intensity[lane], point) >= threshold
-    };
-    (0..LANES).filter(|&lane| reaches(lane)).fold(0, |lanes, lane| lanes | 1 << lane)
+    let reaches = |lane: &usize| is_relevant(&block.vpl(*lane), block.intensity[*lane], point, threshold);
+    (0..LANES).filter(reaches).fold(0, |lanes, lane| lanes | 1 << lane)
 }
 
-/// What the candidates whose relevance reaches the threshold add at a point.
+/// What the candidates add at a point: all of them without a threshold, else those that are certain or reach it.
 ///
 /// Lanes are summed apart and then in order, so that SIMD and plain code give the same bits.
 #[allow(unsafe_code)]
@@ -167,7 +167,7 @@ pub(crate) fn evaluate(
     tracer: &Tracer<'_>,
     blocks: &[VplBlock],
     candidates: &[Candidates],
-    threshold: f32,
+    threshold: Option<f32>,
     at: &Receiver,
     stack: &mut PacketStack,
 ) -> Gathered {
@@ -180,8 +180,9 @@ pub(crate) fn evaluate(
     let mut gathered = Gathered { color: Vec3::ZERO, chosen: 0, shadow_rays: 0 };
     for candidates in candidates {
         let block = &blocks[candidates.block as usize];
-        let relevant = if candidates.certain { u32::MAX } else { relevant_lanes(block, at.point, threshold) };
-        let chosen = candidates.lanes & relevant;
+        let tested = threshold.filter(|_| !candidates.certain);
+        let relevant = tested.map_or(u32::MAX, |threshold| relevant_lanes(block, at.point, threshold));
+        let chosen = u32::from(candidates.lanes) & relevant;
         gathered.chosen += chosen.count_ones();
         for lane in (0..LANES).filter(|lane| chosen >> lane & 1 == 1) {
             let vpl = block.vpl(lane);

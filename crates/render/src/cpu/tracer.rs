@@ -131,7 +131,14 @@ mod tests {
                 };
                 let mut stack = PacketStack::new();
                 let mut gather = |simd| {
-                    evaluate(&Tracer::new(world.geometry(), rules, simd), &tree.blocks, &all, 1e-5, &at, &mut stack)
+                    evaluate(
+                        &Tracer::new(world.geometry(), rules, simd),
+                        &tree.blocks,
+                        &all,
+                        Some(1e-5),
+                        &at,
+                        &mut stack,
+                    )
                 };
                 let (plain, wide) = (gather(Simd::Off), gather(Simd::Auto));
                 assert_eq!(plain, wide, "{scene} at {}", at.point);
