@@ -70,7 +70,7 @@ pub(crate) fn select(
     loop {
         let node = &tree.nodes[index as usize];
         if node.node[0] == 0 {
-            take_blocks(tree, node, left, candidates, &mut visits);
+            take_blocks(node, left, candidates, &mut visits);
             left = Decisions::default();
         }
         let mut child = 0;
@@ -105,21 +105,16 @@ pub(crate) fn select(
 
 /// Takes the accepted and the undecided blocks of a node that has only blocks, without a branch per block: which are
 /// taken is hard to predict.
-fn take_blocks(
-    tree: &LightTree,
-    node: &LightNode,
-    decisions: Decisions,
-    candidates: &mut Vec<Candidates>,
-    visits: &mut TreeVisits,
-) {
+fn take_blocks(node: &LightNode, decisions: Decisions, candidates: &mut Vec<Candidates>, visits: &mut TreeVisits) {
+    let Decisions { accept, descend } = decisions;
     let mut taken = [Candidates { block: 0, lanes: 0, certain: false }; LANES];
     let mut count = 0;
-    for lane in 0..node.count as usize {
-        let (accept, descend) = (decisions.accept >> lane & 1, decisions.descend >> lane & 1);
-        let block = node.first_block[lane];
-        taken[count] = Candidates { block, lanes: tree.lanes(block), certain: accept == 1 };
-        count += (accept | descend) as usize;
-        visits.lights += u64::from(node.vpl_count[lane] * descend);
+    for lane in 0..LANES {
+        let lanes = 0xff_u32 >> (LANES as u32 - node.vpl_count[lane]);
+        let certain = accept >> lane & 1 == 1;
+        taken[count % LANES] = Candidates { block: node.first_block[lane], lanes: lanes as u8, certain };
+        count += ((accept | descend) >> lane & 1) as usize;
+        visits.lights += u64::from(node.vpl_count[lane] * (descend >> lane & 1));
     }
     // A copy of known size, cut to its length, is quicker than one of unknown size.
     let length = candidates.len() + count;
