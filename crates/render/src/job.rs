@@ -179,11 +179,11 @@ impl<'a> Job<'a> {
             return None;
         }
         self.timed(Stage::Photons, |job| {
-            job.monitor.begin(Stage::Photons, 1);
-            let (view, rays) = (&job.view, &mut job.stats.rays);
-            let map = PhotonMap::shoot(view.world, &view.tracer, &settings.caustics, settings.run.max_depth, rays);
+            let (view, rays, monitor) = (&job.view, &mut job.stats.rays, job.monitor);
+            let depth = settings.run.max_depth;
+            let map = PhotonMap::shoot(view.world, &view.tracer, &settings.caustics, depth, rays, monitor);
             job.stats.photons_stored = map.len() as u64;
-            job.monitor.end();
+            job.cancelled |= monitor.cancelled();
             Some(map)
         })
     }

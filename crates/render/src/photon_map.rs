@@ -5,6 +5,7 @@
 //! then follow mirrored and refracted rays to the first surface bright enough to show them.
 
 use crate::cpu::Tracer;
+use crate::monitor::{Monitor, Stage};
 use crate::settings::Caustics;
 use crate::stats::Rays;
 use glam::{IVec3, Vec3};
@@ -16,8 +17,8 @@ use lightcuts_kernel::surface::surface_at;
 use lightcuts_world::{ObjectBounds, World};
 use rayon::prelude::*;
 
-/// Most photons across a disk; a finer step is widened to it.
-const MAX_PER_SIDE: u32 = 4096;
+/// Most photons in all; a finer step is widened until they suffice.
+const MAX_PHOTONS: usize = 1 << 26;
 
 /// Most rays that one photon may split into.
 const MAX_BRANCHES: usize = 64;
@@ -45,38 +46,52 @@ fn cell_key(cell: &IVec3) -> [i32; 3] {
 }
 
 impl PhotonMap {
-    /// Shoots photons from every light at every mirror and glass object.
+    /// Shoots photons from every light at every mirror and glass object. A monitor that cancels gets those shot so far.
     pub(crate) fn shoot(
         world: &World,
         tracer: &Tracer<'_>,
         settings: &Caustics,
         max_depth: u32,
         rays: &mut Rays,
+        monitor: &dyn Monitor,
     ) -> Self {
-        let targets = || {
-            let worth =
-                |b: &ObjectBounds| b.reflection >= settings.min_reflection || b.refraction >= settings.min_refraction;
-            world.object_bounds.iter().enumerate().filter(move |(_, bounds)| worth(bounds))
-        };
+        let worth =
+            |b: &ObjectBounds| b.reflection >= settings.min_reflection || b.refraction >= settings.min_refraction;
+        let objects: Vec<(usize, &ObjectBounds)> =
+            world.object_bounds.iter().enumerate().filter(|(_, bounds)| worth(bounds)).collect();
+        let pairs = world.lights.len() * objects.len();
+        let most_per_side = (MAX_PHOTONS / pairs.max(1)).isqrt().max(1) as u32;
+        let step = settings.step;
+        let targets: Vec<Target<'_>> = world
+            .lights
+            .iter()
+            .flat_map(|light| objects.iter().map(move |&(object, bounds)| (light, object, bounds)))
+            .map(|(light, object, bounds)| Target {
+                light,
+                bounds,
+                object: object as u32 + 1,
+                side: ((2.0 * bounds.radius / step).ceil().max(1.0) as u32).min(most_per_side),
+            })
+            .collect();
+        monitor.begin(Stage::Photons, targets.iter().map(|target| u64::from(target.side)).sum());
         let mut photons = Vec::new();
-        for light in &world.lights {
-            for (object, bounds) in targets() {
-                let target = Target { light, bounds, object: object as u32 + 1, step: settings.step };
-                let side = target.per_side();
-                let rows: Vec<(Vec<Photon>, u64)> = (0..side)
-                    .into_par_iter()
-                    .map(|row| {
-                        let mut walk = Walk { world, tracer, settings, max_depth, found: Vec::new(), rays: 0 };
-                        (0..side).for_each(|column| walk.emit(&target, row, column, side));
-                        (walk.found, walk.rays)
-                    })
-                    .collect();
-                for (found, count) in rows {
-                    photons.extend(found);
-                    rays.photon += count;
-                }
+        for target in &targets {
+            let rows: Vec<(Vec<Photon>, u64)> = (0..target.side)
+                .into_par_iter()
+                .filter(|_| !monitor.cancelled())
+                .map(|row| {
+                    let mut walk = Walk { world, tracer, settings, max_depth, found: Vec::new(), rays: 0 };
+                    (0..target.side).for_each(|column| walk.emit(target, row, column));
+                    monitor.advance();
+                    (walk.found, walk.rays)
+                })
+                .collect();
+            for (found, count) in rows {
+                photons.extend(found);
+                rays.photon += count;
             }
         }
+        monitor.end();
         Self::new(photons, settings.radius, settings.min_photons)
     }
 
@@ -128,17 +143,14 @@ struct Target<'a> {
     light: &'a Light,
     bounds: &'a ObjectBounds,
     object: u32,
-    step: f32,
+    /// Photons across the disk.
+    side: u32,
 }
 
 impl Target<'_> {
-    fn per_side(&self) -> u32 {
-        ((2.0 * self.bounds.radius / self.step).ceil().max(1.0) as u32).min(MAX_PER_SIDE)
-    }
-
     /// The ray through a point of the grid, and the area of disk that it stands for, if the light shines there.
-    fn ray(&self, row: u32, column: u32, side: u32) -> Option<(Ray, f32)> {
-        let spacing = 2.0 * self.bounds.radius / side as f32;
+    fn ray(&self, row: u32, column: u32) -> Option<(Ray, f32)> {
+        let spacing = 2.0 * self.bounds.radius / self.side as f32;
         let axis = match self.light.kind {
             DIRECTIONAL => self.light.direction,
             _ => normalize(self.bounds.center - self.light.position),
@@ -174,8 +186,8 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn emit(&mut self, target: &Target<'_>, row: u32, column: u32, side: u32) {
-        let Some((ray, area)) = target.ray(row, column, side) else { return };
+    fn emit(&mut self, target: &Target<'_>, row: u32, column: u32) {
+        let Some((ray, area)) = target.ray(row, column) else { return };
         let power = target.light.diffuse * (target.light.attenuation * area);
         let mut open = [(ray, power, 0_u32); MAX_BRANCHES];
         let mut size = 1;

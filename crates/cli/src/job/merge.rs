@@ -18,9 +18,9 @@ pub(crate) fn resolve(scene: &Settings, files: &[JobFile], flags: &SettingFlags)
     overlay(&mut table, &flags);
     let settings: Settings = table.try_into().map_err(|error: toml::de::Error| unexpected(&error.message()))?;
     settings.validate().map_err(|error| {
-        let culprit = files.iter().rev().find_map(|file| Some((file, file.span_of(error.name)?)));
+        let culprit = files.iter().rev().find_map(|file| Some((file, file.span_of(&error.name)?)));
         match culprit {
-            _ if is_set(&flags, error.name) => Failure::usage(error.to_string(), "it comes from the command line"),
+            _ if is_set(&flags, &error.name) => Failure::usage(error.to_string(), "it comes from the command line"),
             Some((file, span)) => file.out_of_range(&error, span),
             None => Failure::usage(error.to_string(), "it comes from the scene's recommendations"),
         }

@@ -238,7 +238,8 @@ impl AmbientOcclusion {
 pub struct Caustics {
     /// Whether photons are shot.
     pub enabled: bool,
-    /// Spacing of the photons on the disk through a target's bounding sphere, in scene units.
+    /// Spacing of the photons on the disk through a target's bounding sphere, in scene units; wider where all lights and
+    /// targets together would take more than 2^26 photons.
     pub step: f32,
     /// Radius of the gathered disk, in scene units.
     pub radius: f32,
@@ -369,6 +370,10 @@ mod tests {
         let mut settings = Settings::default();
         settings.caustics.radius = f32::NAN;
         assert_eq!(settings.validate().unwrap_err().name, "caustics.radius");
+        settings.display.tone_mapping = ToneMappingKind::Local;
+        settings.caustics.radius = 4.0;
+        settings.display.local.key = -1.0;
+        assert_eq!(settings.validate().unwrap_err().name, "display.local.key");
         settings.image.width = 0;
         assert_eq!(settings.validate().unwrap_err().name, "image.width");
     }

@@ -1,14 +1,15 @@
 //! The range of every parameter, checked once, so that rendering cannot fail.
 
-use super::{ImageSize, Settings};
-use lightcuts_image::MAX_PIXELS;
+use super::{ImageSize, Settings, ToneMappingKind};
+use lightcuts_image::{ImageError, MAX_PIXELS};
+use std::borrow::Cow;
 
 /// A parameter out of its range.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{name} is {value}; expected {expected}")]
 pub struct SettingsError {
     /// `table.key` as in a job file.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// The value.
     pub value: String,
     /// What was expected.
@@ -59,16 +60,33 @@ impl Settings {
         number("caustics.min-diffuse", caustics.min_diffuse, 0.0, 1e6)?;
         number("bloom.radius", self.bloom.radius, 0.0, 1024.0)?;
         number("bloom.weight", self.bloom.weight, 0.0, 1.0)?;
-        self.display.operator().validate().map_err(|error| SettingsError {
-            name: "display",
-            value: error.to_string(),
-            expected: "parameters in range".to_owned(),
-        })
+        self.display.operator().validate().map_err(|error| self.display_error(error))
+    }
+
+    /// A fault of the tone mapping operator, by its name in a job file.
+    fn display_error(&self, error: ImageError) -> SettingsError {
+        let table = if self.display.tone_mapping == ToneMappingKind::Local { "local" } else { "global" };
+        match error {
+            ImageError::Parameter { parameter, range, value } => SettingsError {
+                name: format!("display.{table}.{parameter}").into(),
+                value: value.to_string(),
+                expected: range.to_owned(),
+            },
+            other => SettingsError {
+                name: format!("display.{table}").into(),
+                value: other.to_string(),
+                expected: "parameters in range".to_owned(),
+            },
+        }
     }
 }
 
 fn ensure(name: &'static str, value: impl std::fmt::Display, holds: bool, expected: &str) -> Result<(), SettingsError> {
-    if holds { Ok(()) } else { Err(SettingsError { name, value: value.to_string(), expected: expected.to_owned() }) }
+    if holds {
+        Ok(())
+    } else {
+        Err(SettingsError { name: name.into(), value: value.to_string(), expected: expected.to_owned() })
+    }
 }
 
 fn number(name: &'static str, value: f32, least: f32, most: f32) -> Result<(), SettingsError> {
