@@ -2,7 +2,6 @@
 
 use crate::project;
 use anyhow::{Context as _, Result, bail, ensure};
-use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -26,9 +25,6 @@ const FOREIGN: [(&str, &str); 2] = [("venus.txt", "venus.obj"), ("galleon.txt", 
 
 /// Options that show what a scene is for.
 const OPTIONS: [(&str, &[&str]); 1] = [("caustics.txt", &["--caustics"])];
-
-/// Picture size for which the scenes' VPL probabilities are meant (thesis: 512 x 512).
-const THESIS_SIZE: f64 = 512.0;
 
 /// Renders every scene and says how long each took; fails at the end if one failed.
 pub(crate) fn run(args: &Args) -> Result<()> {
@@ -75,30 +71,17 @@ fn scenes() -> Result<Vec<PathBuf>> {
 }
 
 fn render(cli: &Path, scene: &Path, picture: &Path, models: &Path, args: &Args) -> Result<()> {
-    let probability = probability(cli, scene, models)? * (THESIS_SIZE / f64::from(args.size)).powi(2);
     let name = file_name(scene);
     let extra = OPTIONS.iter().find(|(scene, _)| *scene == name).map_or(&[][..], |(_, options)| options);
     let mut command = Command::new(cli);
     command.arg("render").arg(scene).arg("-o").arg(picture).arg("--search-path").arg(models);
     command.arg("--quiet").arg(format!("--size={0}x{0}", args.size)).arg(format!("--samples={}", args.samples));
-    // As many VPLs as at the thesis' size, hence as bright: the thesis does not divide by their number.
-    command.arg(format!("--vpl-probability={}", probability.min(1.0))).args(extra);
+    command.args(extra);
     let output = command.output().context("cannot run lightcuts")?;
     if !output.status.success() {
         bail!("{}: {}", output.status, String::from_utf8_lossy(&output.stderr).trim());
     }
     Ok(())
-}
-
-/// The VPL probability that a render of a scene uses by itself.
-fn probability(cli: &Path, scene: &Path, models: &Path) -> Result<f64> {
-    let output = Command::new(cli).arg("info").arg(scene).arg("--json").arg("--search-path").arg(models).output();
-    let output = output.context("cannot run lightcuts")?;
-    if !output.status.success() {
-        bail!("{}", String::from_utf8_lossy(&output.stderr).trim());
-    }
-    let info: Value = serde_json::from_slice(&output.stdout).context("`lightcuts info --json` gave no JSON")?;
-    info["settings"]["vpl"]["probability"].as_f64().context("`lightcuts info --json` tells no VPL probability")
 }
 
 fn file_name(path: &Path) -> String {

@@ -1,37 +1,45 @@
-//! Memory: how much a picture needs, how much there is, how much was used. Known on Linux only.
+//! Memory: how much a picture needs, how much there is, how much was used. Known on Linux only; limits of a container
+//! are not looked at.
 
 use crate::exit::Failure;
 use lightcuts::rendering::ImageSize;
 
-/// Memory for every pixel: films, surfaces seen, layers, the encoded file. Measured: 206 for a render of 2048 x 2048
-/// pixels written as EXR; the rest is for bloom and tone mapping.
+/// Memory for every pixel, in bytes: films, surfaces seen, layers, the encoded file. Measured: 206 for a render of
+/// 2048 x 2048 pixels written as EXR; the rest is for bloom and tone mapping.
 const BYTES_PER_PIXEL: u64 = 250;
 
-/// Fails if the picture cannot fit: running out of memory would end the process in the middle of the render.
+/// Fails if a picture of this size does not fit into free memory and swap: running out of them would end the process in
+/// the middle of the render. Where nobody tells how much is free, every size is let through.
 pub(crate) fn require_for(size: ImageSize) -> Result<(), Failure> {
     let need = u64::from(size.width) * u64::from(size.height) * BYTES_PER_PIXEL;
-    let is_there = |key| kilobytes("/proc/meminfo", key);
-    match (is_there("MemAvailable:"), is_there("SwapFree:")) {
-        (Some(memory), swap) if memory + swap.unwrap_or(0) < need => Err(Failure::usage(
-            format!("a picture of {} x {} pixels needs about {} of memory", size.width, size.height, told(need)),
-            format!("{} are free; ask for a smaller picture", told(memory)),
+    match free_bytes() {
+        Some(free) if free < need => Err(Failure::usage(
+            format!("a picture of {} x {} pixels needs about {} of memory", size.width, size.height, mebibytes(need)),
+            format!("{} are free, swap included; choose a smaller --size", mebibytes(free)),
         )),
         _ => Ok(()),
     }
 }
 
-/// Highest resident size of this process so far.
-pub(crate) fn peak_bytes() -> Option<u64> {
-    kilobytes("/proc/self/status", "VmHWM:")
+/// Memory that can be had without pushing other programs out, and free swap, in bytes.
+fn free_bytes() -> Option<u64> {
+    let of = |key| bytes_of("/proc/meminfo", key);
+    Some(of("MemAvailable:")? + of("SwapFree:").unwrap_or(0))
 }
 
-/// The bytes of a line `key 123 kB`, with kB for 1024 bytes as the kernel means it.
-fn kilobytes(file: &str, key: &str) -> Option<u64> {
+/// Most memory that this process had at once so far, in bytes.
+pub(crate) fn peak_bytes() -> Option<u64> {
+    bytes_of("/proc/self/status", "VmHWM:")
+}
+
+/// What a file tells in the line `key 123 kB`, in bytes; Linux writes kB for 1024 bytes. `None` without such a line.
+fn bytes_of(file: &str, key: &str) -> Option<u64> {
     let text = std::fs::read_to_string(file).ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix(key))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-fn told(bytes: u64) -> String {
+/// A number of bytes for people, rounded down to whole MiB.
+fn mebibytes(bytes: u64) -> String {
     format!("{} MiB", bytes >> 20)
 }

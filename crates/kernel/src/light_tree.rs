@@ -5,8 +5,7 @@ use crate::ray::normalize;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// VPLs of one block; also the width of the SIMD registers that test them.
-pub const LANES: usize = 8;
+pub use crate::intersect::LANES;
 
 /// Relative margin by which a bound must miss the threshold before it decides for a whole cluster: above the rounding
 /// error of the bounds and of [`is_relevant`] together.

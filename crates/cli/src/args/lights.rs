@@ -10,9 +10,10 @@ use serde::Serialize;
 pub(crate) struct VplFlags {
     /// Nominal probability that a hit of the first pass becomes a VPL, 0 to 1 [default: the scene's, else 0.0001]
     ///
-    /// The effective one is about 30.5 times as much, as in the original: (floor(p 10^6) + 1) / 32768. More VPLs give
-    /// smoother indirect light and a brighter picture (the thesis does not divide by their number): lower
-    /// --vpl-attenuation in proportion.
+    /// It is that of a picture of 512 x 512 pixels of one sample, and shared out over the camera's rays in others: the
+    /// number of VPLs does not depend on size and samples. The effective one is about 30.5 times as much, as in the
+    /// original: (floor(p 10^6) + 1) / 32768. More VPLs give smoother indirect light and a brighter picture (the thesis
+    /// does not divide by their number): lower --vpl-attenuation in proportion.
     #[arg(long = "vpl-probability", value_name = "P")]
     probability: Option<f32>,
     /// Least r + g + b of a hit's colour for it to become a VPL, 0 to 3 [default: the scene's, else 0.7]
@@ -37,15 +38,15 @@ pub(crate) struct VplFlags {
 pub(crate) struct GatherFlags {
     /// Which VPLs light a point [default: lightcuts]
     ///
-    /// `lightcuts`: those whose relevance reaches --threshold, found through a bounded tree. `all`: every one, slower; the
-    /// reference to compare with.
-    #[arg(long = "gather", value_name = "STRATEGY", value_parser = ["all", "lightcuts"])]
+    /// `lightcuts`: those whose relevance reaches --threshold, found through a bounded tree. `lightcuts-exhaustive`: the
+    /// same ones, hence the same picture, found by testing every VPL; the plain version, to compare times with. `all`:
+    /// every VPL, whatever its relevance; the picture to compare with.
+    #[arg(long = "gather", value_name = "STRATEGY", value_parser = ["all", "lightcuts", "lightcuts-exhaustive"])]
     strategy: Option<String>,
-    /// Least relevance of a VPL for `--gather lightcuts` [default: the scene's, else 0.000001]
+    /// Least relevance of a chosen VPL; not for `--gather all` [default: the scene's, else 0.000001]
     ///
     /// Relevance is intensity x cosine / squared distance, so it depends on the scene's scale. A higher threshold is
-    /// faster and darker; the summary's light ratio tells the share of VPLs that are left. 0 chooses
-    /// every VPL.
+    /// faster and darker; the summary's light ratio tells the share of VPLs that are left. 0 chooses every VPL.
     #[arg(long, value_name = "X")]
     threshold: Option<f32>,
 }

@@ -40,8 +40,8 @@ pub(crate) struct RunFlags {
 pub(crate) struct ImageFlags {
     /// Width and height in one, such as 640x480.
     ///
-    /// VPLs are placed at hits of camera rays, so their number grows with that of the pixels: lower --vpl-probability in
-    /// proportion to keep the picture's brightness and the time per pixel.
+    /// VPLs stay as many, and their light as bright, at any size: their probability is shared out over the camera's rays.
+    /// In a wide picture some of them go to what it sees beside a square one.
     #[arg(long, value_name = "WxH", conflicts_with_all = ["width", "height"])]
     size: Option<Size>,
     /// Width in pixels [default: 512]
@@ -78,7 +78,7 @@ pub(crate) struct SamplingFlags {
     /// Samples of every pixel, 1 to 4096 [default: 1]
     ///
     /// The time is proportional to it. 4 to 16 make smooth edges. VPLs stay as many: their probability is shared out over
-    /// the samples.
+    /// the camera's rays.
     #[arg(long, short = 's', value_name = "N")]
     samples: Option<u32>,
     /// Samples of pixels that differ from a neighbour; none unless above --samples [default: 0]

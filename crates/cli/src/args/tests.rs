@@ -73,6 +73,38 @@ fn every_setting_has_one_flag_whose_help_tells_the_default() {
     assert_eq!(expected, BTreeMap::new(), "settings without a flag");
 }
 
+/// The words that the settings accept for a key: those that serde names when it is given another.
+fn accepted(key: &str) -> Vec<String> {
+    let set = key
+        .rsplit('.')
+        .fold(Value::String("?".to_owned()), |value, key| Value::Table(Table::from_iter([(key.to_owned(), value)])));
+    let error = set.try_into::<Settings>().unwrap_err().to_string();
+    let (_, expected) = error.lines().next().unwrap().split_once(", expected ").unwrap();
+    expected.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+#[test]
+fn flags_offer_every_word_that_the_settings_accept() {
+    let command = Cli::command();
+    let render = command.find_subcommand("render").unwrap();
+    let mut flags_with_words = 0;
+    for arg in render.get_arguments() {
+        let mut words: Vec<_> = arg.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
+        let is_setting = !["Output", "Job", "Performance"].contains(&arg.get_help_heading().unwrap_or("Output"));
+        if !is_setting || words.is_empty() || words == ["true", "false"] {
+            continue;
+        }
+        let flag = format!("--{}={}", arg.get_long().unwrap(), words[0]);
+        let key = leaves(&flags(&[&flag]), "").into_keys().next().unwrap();
+        let mut expected = accepted(&key);
+        words.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(words, expected, "{key}");
+        flags_with_words += 1;
+    }
+    assert_eq!(flags_with_words, 6);
+}
+
 #[test]
 fn switches_go_both_ways() {
     for (flag, key) in [("ao", "ambient-occlusion"), ("caustics", "caustics"), ("bloom", "bloom")] {

@@ -54,7 +54,7 @@ fn one_failed_output_does_not_stop_the_others() {
     let folder = Folder::new();
     let limited = "trap '' XFSZ; ulimit -f 8; exec \"$0\" \"$@\"";
     let arguments =
-        "render scene.txt --size 64x64 --vpl-probability 0.0001 -o a.exr --write-vpls v.csv --write-job j.toml";
+        "render scene.txt --size 64x64 --vpl-probability 0.000002 -o a.exr --write-vpls v.csv --write-job j.toml";
     let mut command = std::process::Command::new("sh");
     command.args(["-c", limited, env!("CARGO_BIN_EXE_lightcuts")]).args(arguments.split(' '));
     let assert = command.current_dir(folder.at(".")).assert().code(1);

@@ -155,8 +155,8 @@ pub enum FilterKind {
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct VplPlacement {
     /// Nominal probability p that a hit becomes a VPL, for a picture of 512 x 512 pixels of one sample. The effective one
-    /// is (floor(p 10^6) + 1) / 32768, about 30.5 times as much, as in the original; shared out over the camera rays, so
-    /// that the number of VPLs does not depend on the picture's size and samples.
+    /// is (floor(p 10^6) + 1) / 32768, about 30.5 times as much, as in the original; shared out over the camera rays and
+    /// at most 1, so that pictures of one shape place as many VPLs at any size and number of samples.
     pub probability: f32,
     /// Least r + g + b of a hit's colour for it to become a VPL.
     pub min_illumination: f32,
