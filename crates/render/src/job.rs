@@ -115,7 +115,7 @@ impl<'a> Job<'a> {
         let settings = self.settings;
         let occlusion = self.occlusion();
         let lighting = Lighting::Scene { occlusion: occlusion.as_ref() };
-        let wanted = settings.vpl.enabled && self.given_vpls.is_none();
+        let wanted = self.given_vpls.is_none();
         let size = settings.image;
         let camera_rays = u64::from(size.width) * u64::from(size.height) * u64::from(settings.sampling.samples);
         let stream = stream(settings.run.seed, PLACEMENT);
@@ -175,7 +175,8 @@ impl<'a> Job<'a> {
 
     fn shoot_photons(&mut self) -> Option<PhotonMap> {
         let settings = self.settings;
-        if !settings.caustics.enabled || self.cancelled {
+        // Without a second pass nothing would gather them.
+        if !settings.caustics.enabled || !settings.vpl.enabled || self.cancelled {
             return None;
         }
         self.timed(Stage::Photons, |job| {

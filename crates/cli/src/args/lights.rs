@@ -26,7 +26,8 @@ pub(crate) struct VplFlags {
     /// The brightness of all indirect light. Halve it when there are twice as many VPLs.
     #[arg(long = "vpl-attenuation", value_name = "X")]
     attenuation: Option<f32>,
-    /// Make only the first pass: direct light, mirrors and refraction, no light of VPLs [default: false]
+    /// Make only the first pass: direct light, mirrors and refraction; VPLs are placed, for --write-vpls, but unused
+    /// [default: false]
     #[arg(long = "no-second-pass", value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     #[serde(serialize_with = "negated")]
     enabled: Option<bool>,

@@ -40,8 +40,8 @@ pub(crate) struct Receiver {
 /// Working memory of [`evaluate`]: subtrees still to be visited, each with the rays of a packet that enter it.
 pub(crate) type PacketStack = Vec<(u32, u32)>;
 
-/// Depth of the deepest light tree: 2^32 VPLs halved are gathered eight at a time, the last levels perhaps fewer.
-const MAX_LEVELS: usize = 34;
+/// Nodes above a block in the largest tree: each level divides by eight, and 8^11 is more than 2^32 VPLs.
+const MAX_LEVELS: usize = 11;
 
 /// What to do with the clusters of a node, a bit per lane.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

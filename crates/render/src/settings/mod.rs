@@ -162,7 +162,7 @@ pub struct VplPlacement {
     pub min_illumination: f32,
     /// Factor on every VPL's light.
     pub attenuation: f32,
-    /// Whether the second pass is made at all.
+    /// Whether the second pass is made at all; VPLs are placed all the same, to be looked at or written.
     pub enabled: bool,
 }
 

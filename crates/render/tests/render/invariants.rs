@@ -216,3 +216,20 @@ fn size_and_samples_change_neither_the_number_of_vpls_nor_the_brightness() {
         );
     }
 }
+
+#[test]
+fn without_a_second_pass_vpls_are_placed_all_the_same_and_no_photon_is_shot() {
+    let (world, mut settings) = scene("thesis/simple.txt", Vec::new());
+    settings.caustics.enabled = true;
+    for reproduce in [false, true] {
+        settings.run.reproduce = reproduce;
+        settings.vpl.enabled = true;
+        let both = run(&world, &settings);
+        settings.vpl.enabled = false;
+        let first = run(&world, &settings);
+        assert!(both.stats.rays.photon > 0 && first.stats.rays.photon == 0);
+        assert_eq!(both.vpls, first.vpls);
+        assert_eq!(both.first_pass, first.first_pass);
+        assert!(first.second_pass.pixels().iter().all(|p| *p == [0.0; 3]));
+    }
+}
