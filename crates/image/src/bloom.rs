@@ -90,7 +90,7 @@ fn add_weight(weights: &mut [f64], shift: isize, weight: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrics::max_abs_difference;
+    use crate::max_abs_difference;
 
     const RADIUS: f32 = 12.0;
     const WEIGHT: f32 = 0.7;

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 use std::io::Cursor;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use exr::block::chunk::{Chunk, CompressedBlock};
@@ -34,23 +35,51 @@ const BLOCKS_AT_ONCE: usize = 64;
 
 /// One part of a file, decoded.
 pub(crate) struct Decoded {
-    /// Index of the part in the file.
-    pub(crate) part: usize,
     /// Width of the data window in pixels.
     pub(crate) width: usize,
     /// Height of the data window in pixels.
     pub(crate) height: usize,
-    /// Full name and samples of each channel, in the order of the file.
+    /// Full name and samples of each channel that was wanted, in the order of the file.
     pub(crate) channels: Vec<(String, Samples)>,
 }
 
-/// Decodes the first part that has the channels R, G and B, at full resolution; the data window is the picture.
+/// The headers of all parts, in the order of the file. Fails with [`ImageError::Malformed`].
+pub(crate) fn headers(path: &Path, bytes: &[u8]) -> Result<Vec<Header>, ImageError> {
+    guarded(path, || Ok(reader(path, bytes)?.headers().to_vec()))
+}
+
+/// The first part that has the channels R, G and B, of halves or floats. Fails with [`ImageError::Malformed`].
+pub(crate) fn part_with_beauty(path: &Path, bytes: &[u8]) -> Result<usize, ImageError> {
+    headers(path, bytes)?.iter().position(has_beauty).ok_or_else(|| no_beauty(path))
+}
+
+/// Decodes the channels with `wanted` names of a part of a file at full resolution; the data window is the picture.
 ///
 /// Allocates nothing that the length of the file does not justify. Fails with [`ImageError::Malformed`].
-pub(crate) fn decode(path: &Path, bytes: &[u8]) -> Result<Decoded, ImageError> {
+pub(crate) fn decode(
+    path: &Path,
+    bytes: &[u8],
+    part: usize,
+    wanted: impl Fn(&str) -> bool,
+) -> Result<Decoded, ImageError> {
+    guarded(path, || decode_part(path, bytes, part, wanted))
+}
+
+/// Last resort: on damaged compressed data the exr crate may still fail an assertion or an index check, and a file must
+/// never end the program. Nothing that outlives `decode` is changed by it, so nothing can be left half changed.
+fn guarded<T>(path: &Path, decode: impl FnOnce() -> Result<T, ImageError>) -> Result<T, ImageError> {
+    catch_unwind(AssertUnwindSafe(decode))
+        .unwrap_or_else(|_| Err(ImageError::malformed(path, "the EXR decoder failed on damaged data")))
+}
+
+fn reader<'a>(path: &Path, bytes: &'a [u8]) -> Result<Reader<Cursor<&'a [u8]>>, ImageError> {
     let malformed = |error: exr::error::Error| ImageError::malformed(path, error.to_string());
-    let reader = Reader::read_from_buffered(Cursor::new(bytes), PEDANTIC).map_err(malformed)?;
-    let part = reader.headers().iter().position(has_beauty).ok_or_else(|| no_beauty(path))?;
+    Reader::read_from_buffered(Cursor::new(bytes), PEDANTIC).map_err(malformed)
+}
+
+fn decode_part(path: &Path, bytes: &[u8], part: usize, wanted: impl Fn(&str) -> bool) -> Result<Decoded, ImageError> {
+    let malformed = |error: exr::error::Error| ImageError::malformed(path, error.to_string());
+    let reader = reader(path, bytes)?;
     check_parts(path, reader.headers(), part, bytes.len())?;
 
     let is_wanted = |block: &BlockIndex| block.layer == part && block.level.0 == 0 && block.level.1 == 0;
@@ -65,12 +94,15 @@ pub(crate) fn decode(path: &Path, bytes: &[u8]) -> Result<Decoded, ImageError> {
     if is_dwa(&meta.headers[part]) {
         chunks.iter().try_for_each(|chunk| check_dwa_block(path, &meta.headers[chunk.layer_index], chunk))?;
     }
-    let samples = decompressed(path, &meta, part, chunks, expected)?;
-
     let header = &meta.headers[part];
     let names = header.channels.list.iter().map(|channel| text(channel.name.as_slice().to_vec()));
+    let names: Vec<String> = names.collect();
+    let mut samples = blank_samples(header, names.iter().map(|name| wanted(name)));
+    decompress(path, &meta, part, chunks, expected, &mut samples)?;
+
     let (width, height) = (header.layer_size.width(), header.layer_size.height());
-    Ok(Decoded { part, width, height, channels: names.zip(samples).collect() })
+    let channels = names.into_iter().zip(samples).filter_map(|(name, samples)| Some((name, samples?)));
+    Ok(Decoded { width, height, channels: channels.collect() })
 }
 
 fn has_beauty(header: &Header) -> bool {
@@ -126,16 +158,16 @@ fn check_dwa_block(path: &Path, header: &Header, chunk: &Chunk) -> Result<(), Im
     Ok(())
 }
 
-/// The samples of each channel of part `part`. Each block must come exactly once.
-fn decompressed(
+/// Fills in the samples of part `part`, channel by channel; `None` is skipped. Each block must come exactly once.
+fn decompress(
     path: &Path,
     meta: &MetaData,
     part: usize,
     chunks: Vec<Chunk>,
     expected: usize,
-) -> Result<Vec<Samples>, ImageError> {
+    samples: &mut [Option<Samples>],
+) -> Result<(), ImageError> {
     let header = &meta.headers[part];
-    let mut samples = blank_samples(header);
     let mut seen = HashSet::with_capacity(expected);
     let mut chunks = chunks.into_iter();
     while chunks.len() > 0 {
@@ -148,36 +180,39 @@ fn decompressed(
             if block.index.layer != part || (level.0, level.1) != (0, 0) || !seen.insert(block.index.pixel_position) {
                 return Err(ImageError::malformed(path, "the offset table does not match the blocks of pixels"));
             }
-            copy_block(header, &block, &mut samples);
+            copy_block(header, &block, samples);
         }
     }
     if seen.len() != expected {
         return Err(ImageError::malformed(path, "blocks of pixels are missing"));
     }
-    Ok(samples)
+    Ok(())
 }
 
-fn blank_samples(header: &Header) -> Vec<Samples> {
+/// Per channel of the file, room for its samples if it is wanted.
+fn blank_samples(header: &Header, wanted: impl Iterator<Item = bool>) -> Vec<Option<Samples>> {
     let pixels = header.layer_size.area();
     let blank = |kind| match kind {
         SampleType::U32 => Samples::U32(vec![0; pixels]),
         SampleType::F16 | SampleType::F32 => Samples::F32(vec![0.0; pixels]),
     };
-    header.channels.list.iter().map(|channel| blank(channel.sample_type)).collect()
+    let channels = header.channels.list.iter().zip(wanted);
+    channels.map(|(channel, wanted)| wanted.then(|| blank(channel.sample_type))).collect()
 }
 
 /// Copies the rows of a block, which come channel by channel, to their places.
-fn copy_block(header: &Header, block: &UncompressedBlock, samples: &mut [Samples]) {
+fn copy_block(header: &Header, block: &UncompressedBlock, samples: &mut [Option<Samples>]) {
     for line in block.lines(&header.channels) {
         let first = line.location.position.y() * header.layer_size.width() + line.location.position.x();
         let range = first..first + line.location.sample_count;
         let kind = header.channels.list[line.location.channel].sample_type;
         match (&mut samples[line.location.channel], kind) {
-            (Samples::U32(values), _) => copy_line(&mut values[range], line.value, u32::from_ne_bytes),
-            (Samples::F32(values), SampleType::F16) => {
+            (None, _) => {}
+            (Some(Samples::U32(values)), _) => copy_line(&mut values[range], line.value, u32::from_ne_bytes),
+            (Some(Samples::F32(values)), SampleType::F16) => {
                 copy_line(&mut values[range], line.value, |bytes| f16::from_ne_bytes(bytes).to_f32());
             }
-            (Samples::F32(values), _) => copy_line(&mut values[range], line.value, f32::from_ne_bytes),
+            (Some(Samples::F32(values)), _) => copy_line(&mut values[range], line.value, f32::from_ne_bytes),
         }
     }
 }

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::BufReader;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use exr::block::chunk::CompressedBlock;
@@ -14,7 +13,7 @@ use exr::prelude::attribute::ChannelDescription;
 use exr::prelude::{Compression, LineOrder, SampleType, Text, Vec2};
 use rayon::prelude::*;
 
-use crate::exr_decode::decode;
+use crate::exr_decode::{decode, part_with_beauty};
 use crate::exr_header::{SampleKind, encode, read_attributes};
 use crate::exr_layout::{Channel, channels_of, layers_of};
 use crate::limits::check_writable;
@@ -48,12 +47,10 @@ pub fn write_exr(path: impl AsRef<Path>, layers: &Layers) -> Result<(), ImageErr
 pub fn read_exr(path: impl AsRef<Path>) -> Result<Layers, ImageError> {
     let path = path.as_ref();
     let bytes = fs::read(path).map_err(|source| ImageError::io("read", path, source))?;
-    // Last resort: on damaged compressed data the exr crate may still fail an assertion or an index check, and a file
-    // must never end the program. Nothing is shared with the closure, so nothing can be left half changed.
-    let decoded = catch_unwind(AssertUnwindSafe(|| decode(path, &bytes)))
-        .unwrap_or_else(|_| Err(ImageError::malformed(path, "the EXR decoder failed on damaged data")))?;
-    let attributes = read_attributes(&mut &bytes[..], decoded.part)
-        .map_err(|error| ImageError::malformed(path, error.to_string()))?;
+    let part = part_with_beauty(path, &bytes)?;
+    let decoded = decode(path, &bytes, part, |_| true)?;
+    let attributes =
+        read_attributes(&mut &bytes[..], part).map_err(|error| ImageError::malformed(path, error.to_string()))?;
     let layers = layers_of(path, decoded.width, decoded.height, decoded.channels)?;
     Ok(layers.with_attributes(attributes))
 }

@@ -9,7 +9,7 @@ use image::{DynamicImage, ExtendedColorType, ImageDecoder as _, ImageEncoder as 
 use serde::{Deserialize, Serialize};
 
 use crate::limits::{Claim, MAX_EXPANSION, check_writable};
-use crate::{Image, ImageError, write_atomic};
+use crate::{Channels, Image, ImageError, write_atomic};
 
 mod text;
 
@@ -97,21 +97,46 @@ fn encoded(image: &Image, transfer: Transfer) -> image::ImageResult<Vec<u8>> {
 pub fn read_png(path: impl AsRef<Path>, transfer: Transfer) -> Result<Image, ImageError> {
     let path = path.as_ref();
     let bytes = fs::read(path).map_err(|source| ImageError::io("read", path, source))?;
+    let codes = decode_png(path, &bytes)?.codes;
+    Ok(codes.map(|pixel| pixel.map(|code| transfer.decode(code))))
+}
+
+/// What a PNG holds.
+pub(crate) struct Decoded {
+    /// Code values in 0..=1; grey three times, without alpha.
+    pub(crate) codes: Image,
+    /// The channels of the file; of a palette, those of its colours.
+    pub(crate) channels: Channels,
+    /// Whether the file's samples have 16 bits.
+    pub(crate) is_16_bit: bool,
+}
+
+/// Decodes the bytes of a PNG; fails as [`read_png`] does.
+pub(crate) fn decode_png(path: &Path, bytes: &[u8]) -> Result<Decoded, ImageError> {
     let malformed = |error: image::ImageError| ImageError::malformed(path, error.to_string());
-    let decoder = PngDecoder::new(Cursor::new(&bytes)).map_err(malformed)?;
+    let decoder = PngDecoder::new(Cursor::new(bytes)).map_err(malformed)?;
     let (width, height) = decoder.dimensions();
+    let color = decoder.color_type();
     let claim = Claim {
         width: width as usize,
         height: height as usize,
-        bytes_per_pixel: usize::from(decoder.color_type().bytes_per_pixel()),
+        bytes_per_pixel: usize::from(color.bytes_per_pixel()),
         // A bit of a black and white picture becomes a byte.
         expansion: 8 * MAX_EXPANSION,
         file_bytes: bytes.len(),
     };
     claim.check(path)?;
-    let picture = DynamicImage::from_decoder(decoder).map_err(malformed)?.into_rgb32f();
-    let pixels = picture.pixels().map(|pixel| pixel.0.map(|code| transfer.decode(code))).collect();
-    Image::from_pixels(width as usize, height as usize, pixels)
+    let picture = DynamicImage::from_decoder(decoder).map_err(malformed)?;
+    let is_16_bit = color.bytes_per_pixel() / color.channel_count() == 2;
+    // Divided here, so that grey and colour of one code value are one number.
+    let pixels = if is_16_bit {
+        picture.into_rgb16().pixels().map(|pixel| pixel.0.map(|code| f32::from(code) / 65_535.0)).collect()
+    } else {
+        picture.into_rgb8().pixels().map(|pixel| pixel.0.map(|code| f32::from(code) / 255.0)).collect()
+    };
+    let codes = Image::from_pixels(width as usize, height as usize, pixels)?;
+    let colours = if color.has_color() { Channels::Rgb } else { Channels::Grey };
+    Ok(Decoded { codes, channels: colours.with_alpha(color.has_alpha()), is_16_bit })
 }
 
 /// Reads the text of keyword `keyword` as [`write_png_with_text`] stores it; `None` where there is none.
