@@ -1,6 +1,7 @@
 //! The tasks of the project's house: `cargo xtask --help`.
 
 mod bench;
+mod browser;
 mod ci;
 #[cfg(test)]
 mod docs;

@@ -1,6 +1,7 @@
-//! `cargo xtask test`: all tests, with whatever they need. So far they need nothing but Rust.
+//! `cargo xtask test`: all tests, with whatever they need: a browser for those of pages.
 
-use crate::project::{self, cargo, shown};
+use crate::browser;
+use crate::project::{self, shown};
 use crate::tally::Tally;
 use anyhow::{Context as _, Result, bail};
 use std::io::{BufRead as _, BufReader};
@@ -8,6 +9,7 @@ use std::process::{Command, Stdio};
 
 /// Runs the workspace's tests and documentation examples.
 pub(crate) fn run() -> Result<()> {
+    browser::provide();
     if has_nextest() {
         println!("tests run with cargo-nextest, documentation examples with cargo test");
         // First, so that the last line is that of nextest.
@@ -17,6 +19,15 @@ pub(crate) fn run() -> Result<()> {
         println!("tests run with cargo test; cargo-nextest is used where it is installed");
         run_counted(cargo().args(["test", "--workspace", "--no-fail-fast"]), "all tests")
     }
+}
+
+/// `cargo`, with what tests look for in their surroundings.
+fn cargo() -> Command {
+    let mut command = project::cargo();
+    if browser::is_required() {
+        command.env(browser::REQUIRED, "1");
+    }
+    command
 }
 
 fn has_nextest() -> bool {

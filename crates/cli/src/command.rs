@@ -2,7 +2,7 @@
 
 use crate::args::{Cli, Command};
 use crate::exit::{Exit, Failure};
-use crate::{console, info, render, shell};
+use crate::{compare, console, experiment, info, render, report, shell};
 use std::io::IsTerminal;
 use tracing_subscriber::EnvFilter;
 
@@ -13,6 +13,9 @@ pub(crate) fn run(cli: &Cli) -> Exit {
     let result = match &cli.command {
         Command::Render(args) => render::run(args, cli.verbose > 0),
         Command::Info(args) => info::run(args),
+        Command::Compare(args) => compare::run(args, cli.verbose > 0),
+        Command::Experiment(args) => experiment::run(args, cli.verbose > 0),
+        Command::Report(args) => report::run(args),
         Command::Completions { shell } => shell::completions(*shell),
         Command::Man { directory } => shell::man(directory.as_deref()),
     };

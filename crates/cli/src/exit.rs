@@ -7,28 +7,53 @@
 //! | 2 | bad usage, job file or parameters |
 //! | 3 | a scene, model, texture, picture or VPL file cannot be read or is malformed |
 //! | 130 | interrupted; what was rendered so far is written |
+//!
+//! `compare` answers a question, so its codes are those of diff(1):
+//!
+//! | code | meaning |
+//! | --- | --- |
+//! | 0 | the pictures are the same |
+//! | 1 | they differ |
+//! | 2 | trouble of any kind: nothing is said about the pictures |
 
 use miette::{Diagnostic, MietteDiagnostic, Report};
 use std::process::ExitCode;
 
-/// The exit codes.
+/// How a command ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Exit {
-    /// All is done.
-    Done = 0,
+    /// All is done; of `compare`: the pictures are the same.
+    Done,
     /// An output could not be written.
-    NotWritten = 1,
-    /// Bad usage, job file or parameters; clap uses the same code.
-    Usage = 2,
+    NotWritten,
+    /// Bad usage, job file or parameters.
+    Usage,
     /// An input cannot be read.
-    Input = 3,
-    /// A signal broke it off: 128 + SIGINT, as shells have it.
-    Interrupted = 130,
+    Input,
+    /// Of `compare`: the pictures differ.
+    Differs,
+    /// Of `compare`: it could not judge, whatever the reason.
+    Trouble,
+    /// A signal broke it off.
+    Interrupted,
+}
+
+impl Exit {
+    /// The number that the shell gets.
+    pub(crate) fn code(self) -> u8 {
+        match self {
+            Self::Done => 0,
+            Self::NotWritten | Self::Differs => 1,
+            Self::Usage | Self::Trouble => 2, // clap uses the same for bad usage
+            Self::Input => 3,
+            Self::Interrupted => 130, // 128 + SIGINT, as shells have it
+        }
+    }
 }
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
-        Self::from(exit as u8)
+        Self::from(exit.code())
     }
 }
 

@@ -11,7 +11,7 @@ static SIGNALS: AtomicU32 = AtomicU32::new(0);
 pub(crate) fn listen() {
     let listening = ctrlc::set_handler(|| {
         if SIGNALS.fetch_add(1, Ordering::SeqCst) > 0 {
-            std::process::exit(Exit::Interrupted as i32);
+            std::process::exit(i32::from(Exit::Interrupted.code()));
         }
         console::note("lightcuts: interrupted; stopping and writing what there is (once more: stop at once)");
     });

@@ -5,8 +5,11 @@
 
 mod args;
 mod command;
+mod compare;
+
 mod console;
 mod exit;
+mod experiment;
 mod fault;
 mod info;
 mod interrupt;
@@ -18,6 +21,7 @@ mod progress;
 mod render;
 mod report;
 mod shell;
+mod summary;
 
 use clap::Parser;
 

@@ -43,22 +43,7 @@ impl Outputs {
 
     /// Fails unless each can be written and none replaces an input or another output.
     pub(crate) fn check(&self, inputs: &[PathBuf]) -> Result<(), Failure> {
-        let mut taken: Vec<PathBuf> = Vec::new();
-        let inputs: Vec<PathBuf> = inputs.iter().map(|path| identity(path)).collect();
-        for (_, path) in &self.files {
-            let refuse =
-                |why: &str, help: &str| Failure::usage(format!("cannot write {}: {why}", path.display()), help);
-            check_place(path).map_err(|(why, help)| refuse(&why, help))?;
-            let identity = identity(path);
-            if inputs.contains(&identity) {
-                return Err(refuse("it is an input of this render", "give another name with -o"));
-            }
-            if taken.contains(&identity) {
-                return Err(refuse("two outputs have this name", "give each its own"));
-            }
-            taken.push(identity);
-        }
-        Ok(())
+        check_files(self.files.iter().map(|(_, path)| path.as_path()), inputs, "render", "-o")
     }
 
     /// Writes all with `write`, going on after a failure; returns the files written and whether that is all.
@@ -75,6 +60,32 @@ impl Outputs {
         }
         (written, exit)
     }
+}
+
+/// Fails unless each file can be written and none replaces an input or another one. `command` is what has the inputs,
+/// `flag` what names the files.
+pub(crate) fn check_files<'a>(
+    files: impl Iterator<Item = &'a Path>,
+    inputs: &[PathBuf],
+    command: &str,
+    flag: &str,
+) -> Result<(), Failure> {
+    let mut taken: Vec<PathBuf> = Vec::new();
+    let inputs: Vec<PathBuf> = inputs.iter().map(|path| identity(path)).collect();
+    for path in files {
+        let refuse = |why: &str, help: &str| Failure::usage(format!("cannot write {}: {why}", path.display()), help);
+        check_place(path).map_err(|(why, help)| refuse(&why, help))?;
+        let identity = identity(path);
+        if inputs.contains(&identity) {
+            let why = format!("it is an input of this {command}");
+            return Err(refuse(&why, &format!("give another name with {flag}")));
+        }
+        if taken.contains(&identity) {
+            return Err(refuse("two outputs have this name", "give each its own"));
+        }
+        taken.push(identity);
+    }
+    Ok(())
 }
 
 fn picture_kind(path: &Path) -> Result<Kind, Failure> {

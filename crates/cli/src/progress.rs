@@ -10,12 +10,21 @@ use std::time::{Duration, Instant};
 
 /// Least time between two lines of progress.
 const PLAIN_PAUSE: Duration = Duration::from_secs(1);
-const JSON_PAUSE: Duration = Duration::from_millis(200);
+pub(crate) const JSON_PAUSE: Duration = Duration::from_millis(200);
 
 /// Watches a render for the person, or the program, at the other end of standard error.
 pub(crate) struct Progress {
     style: ProgressStyle,
     state: Mutex<State>,
+}
+
+/// The style asked for; else none if `quiet`, a bar on a terminal that logs do not share, else plain lines.
+pub(crate) fn chosen_style(style: Option<ProgressStyle>, quiet: bool, logs: bool) -> ProgressStyle {
+    style.unwrap_or(match () {
+        () if quiet => ProgressStyle::None,
+        () if stderr().is_terminal() && !logs => ProgressStyle::Bar,
+        () => ProgressStyle::Plain,
+    })
 }
 
 struct State {
@@ -30,16 +39,27 @@ struct State {
 }
 
 impl Progress {
-    /// The style asked for; else none if `quiet`, a bar on a terminal that logs do not share, else plain lines.
+    /// With [`chosen_style`].
     pub(crate) fn new(style: Option<ProgressStyle>, quiet: bool, logs: bool) -> Self {
-        let style = style.unwrap_or(match () {
-            () if quiet => ProgressStyle::None,
-            () if stderr().is_terminal() && !logs => ProgressStyle::Bar,
-            () => ProgressStyle::Plain,
-        });
+        let style = chosen_style(style, quiet, logs);
         let now = Instant::now();
         let bar = ProgressBar::hidden();
         Self { style, state: Mutex::new(State { stage: "", done: 0, total: 0, start: now, told: now, tenths: 0, bar }) }
+    }
+
+    /// Starts a stage that is none of a render's, as [`Monitor::begin`] starts one that is.
+    pub(crate) fn begin_stage(&self, name: &'static str, steps: u64) {
+        let now = Instant::now();
+        self.with(|state| {
+            *state =
+                State { stage: name, done: 0, total: steps, start: now, told: now, tenths: 0, bar: state.bar.clone() };
+            match self.style {
+                ProgressStyle::Bar => state.new_bar(),
+                ProgressStyle::Plain => console::note(&format!("{} ...", state.title())),
+                ProgressStyle::Json => state.tell_json(),
+                ProgressStyle::None => {}
+            }
+        });
     }
 
     /// Leaves the line to what comes after.
@@ -55,24 +75,7 @@ impl Progress {
 
 impl Monitor for Progress {
     fn begin(&self, stage: Stage, steps: u64) {
-        let now = Instant::now();
-        self.with(|state| {
-            *state = State {
-                stage: stage.name(),
-                done: 0,
-                total: steps,
-                start: now,
-                told: now,
-                tenths: 0,
-                bar: state.bar.clone(),
-            };
-            match self.style {
-                ProgressStyle::Bar => state.new_bar(),
-                ProgressStyle::Plain => console::note(&format!("{} ...", state.title())),
-                ProgressStyle::Json => state.tell_json(),
-                ProgressStyle::None => {}
-            }
-        });
+        self.begin_stage(stage.name(), steps);
     }
 
     fn advance(&self) {

@@ -7,7 +7,7 @@ use crate::job::{JOB_ATTRIBUTE, Job, VERSION_ATTRIBUTE, require_regular};
 use crate::outputs::{Kind, job_text};
 use crate::plan::Plan;
 use crate::progress::Progress;
-use crate::report::{Statistics, summary};
+use crate::summary::{Statistics, summary};
 use crate::{console, interrupt, memory};
 use lightcuts::{Options, Rendering, Simd, VplCsvError, World, image, vpls_from_csv, vpls_to_csv};
 use std::path::Path;
@@ -17,7 +17,7 @@ const COMPLETE_ATTRIBUTE: &str = "lightcuts:complete";
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
-    start_threads(&args.performance)?;
+    start_threads(args.performance.threads)?;
     interrupt::listen();
     let plan = Plan::new(args)?;
     if args.output.dry_run {
@@ -69,8 +69,9 @@ fn dry_run(mut plan: Plan, quiet: bool) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-fn start_threads(args: &PerformanceArgs) -> Result<(), Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(args.threads)).build_global();
+/// Starts this many threads; 0 is one per processor.
+pub(crate) fn start_threads(threads: u16) -> Result<(), Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global();
     pool.map_err(|error| Failure::usage(format!("cannot start threads: {error}"), "ask for fewer with --threads"))
 }
 

@@ -27,7 +27,7 @@ pub use monitor::{Monitor, Stage, Unwatched};
 pub use rendering::Rendering;
 pub use settings::{
     AmbientOcclusion, Bloom, Caustics, Display, Filter, FilterKind, Gather, ImageSize, Model, Run, Sampling, Settings,
-    SettingsError, Strategy, ToneMappingKind, VplPlacement,
+    SettingsError, Strategy, TomlFault, ToneMappingKind, VplPlacement, overlay, value_at,
 };
 pub use stats::{PassTime, Rays, Stats, TreeVisits};
 pub use vpl_csv::{VplCsvError, vpls_from_csv, vpls_to_csv};

@@ -2,11 +2,12 @@
 
 use crate::monitor::Stage;
 use cpu_time::ProcessTime;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::time::Instant;
 
 /// Statistics of a render; serialised, the body of a `--stats` file.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Stats {
     /// Number of VPLs.
     pub vpl_count: u64,
@@ -32,10 +33,10 @@ pub struct Stats {
 }
 
 /// Time of one stage.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PassTime {
     /// [`Stage::name`].
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Elapsed time in seconds.
     pub wall_s: f64,
     /// Processor time over all threads, in seconds.
@@ -43,7 +44,7 @@ pub struct PassTime {
 }
 
 /// Rays by kind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Rays {
     /// From the camera, in both passes.
     pub primary: u64,
@@ -58,7 +59,7 @@ pub struct Rays {
 }
 
 /// Work of choosing VPLs in the second pass.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct TreeVisits {
     /// Hits that VPLs were chosen for.
     pub shaded_hits: u64,
@@ -99,6 +100,6 @@ pub(crate) fn timed<T>(passes: &mut Vec<PassTime>, stage: Stage, work: impl FnOn
     let result = work();
     let wall_s = wall.elapsed().as_secs_f64();
     let cpu_s = cpu.and_then(|start| start.try_elapsed().ok()).map_or(wall_s, |d| d.as_secs_f64());
-    passes.push(PassTime { name: stage.name(), wall_s, cpu_s });
+    passes.push(PassTime { name: stage.name().into(), wall_s, cpu_s });
     result
 }

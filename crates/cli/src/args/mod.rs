@@ -1,15 +1,21 @@
 //! The command line. Every parameter is declared once, here: help, completions, man pages and job files follow from it.
 
+mod compare;
 mod display;
 mod effects;
+mod experiment;
 mod lights;
 mod picture;
 mod render;
+mod report;
 #[cfg(test)]
 mod tests;
 mod value;
 
+pub(crate) use compare::{ChannelOrder, CompareArgs, InputArgs};
+pub(crate) use experiment::ExperimentArgs;
 pub(crate) use render::{JobArgs, OutputArgs, PerformanceArgs, ProgressStyle, RenderArgs, SimdChoice};
+pub(crate) use report::ReportArgs;
 
 use clap::{Args, Parser, Subcommand, ValueHint};
 use clap_complete::Shell;
@@ -24,6 +30,7 @@ Exit codes:
     2  bad usage, job file or parameters
     3  a scene, model, texture, picture or VPL file cannot be read or is malformed
   130  interrupted (SIGINT, SIGTERM); what was rendered so far is written
+  Those of `lightcuts compare` are a verdict; see its help.
 
 Environment:
   LIGHTCUTS_PATH  more folders to search for models and textures, separated as in PATH
@@ -52,6 +59,15 @@ pub(crate) enum Command {
     /// Show what was understood of a scene, or what a picture holds.
     #[command(after_help = AFTER_HELP)]
     Info(InfoArgs),
+    /// Say how far two pictures differ.
+    #[command(after_help = compare::AFTER_HELP)]
+    Compare(Box<CompareArgs>),
+    /// Render what an experiment file asks for and keep times, counts and differences, one line per render.
+    #[command(after_help = AFTER_HELP)]
+    Experiment(ExperimentArgs),
+    /// Make tables, charts and a page of an experiment's results, without rendering.
+    #[command(after_help = AFTER_HELP)]
+    Report(ReportArgs),
     /// Print a completion script for a shell, to be stored where that shell looks for them.
     Completions {
         /// The shell.

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
 
 /// Most threads that can be asked for; more than any machine has, fewer than start to hurt.
-const MAX_THREADS: i64 = 1024;
+pub(super) const MAX_THREADS: i64 = 1024;
 
 /// Arguments of `render`.
 #[derive(Debug, Default, Args)]

@@ -4,6 +4,7 @@ use super::diagnostic::{TOP_KEYS, toml_fault};
 use super::path;
 use crate::exit::{Exit, Failure};
 use crate::fault::fault;
+use lightcuts::rendering::value_at;
 use lightcuts::{Settings, SettingsError, image};
 use serde::Deserialize;
 use std::io::Read;
@@ -85,14 +86,7 @@ impl JobFile {
 
     /// Where this job sets the parameter `table.key`, if it does.
     pub(super) fn span_of(&self, parameter: &str) -> Option<Range<usize>> {
-        let mut table = DeTable::parse(&self.text).ok()?.into_inner();
-        let mut span = None;
-        for key in parameter.split('.') {
-            let value = table.remove(key)?;
-            span = Some(value.span());
-            table = value.into_inner().as_table().cloned().unwrap_or_default();
-        }
-        span
+        value_at(&self.text, parameter).map(|value| value.span())
     }
 
     /// The complaint about a parameter that this job sets at `span`.

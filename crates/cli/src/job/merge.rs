@@ -4,6 +4,7 @@ use super::JobFile;
 use crate::args::SettingFlags;
 use crate::exit::Failure;
 use lightcuts::Settings;
+use lightcuts::rendering::overlay;
 use toml::{Table, Value};
 
 /// `scene` (built-in defaults with the scene's recommendations), under the job files in their order, under the flags;
@@ -26,18 +27,6 @@ pub(crate) fn resolve(scene: &Settings, files: &[JobFile], flags: &SettingFlags)
         }
     })?;
     Ok(settings)
-}
-
-/// Lays `upper` over `lower`: tables key by key, any other value as a whole.
-fn overlay(lower: &mut Table, upper: &Table) {
-    for (key, value) in upper {
-        match (lower.get_mut(key), value) {
-            (Some(Value::Table(below)), Value::Table(above)) => overlay(below, above),
-            _ => {
-                lower.insert(key.clone(), value.clone());
-            }
-        }
-    }
 }
 
 /// Whether `table.key` has a value.

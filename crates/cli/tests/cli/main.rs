@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
+mod compare;
+mod experiment;
 mod inputs;
 mod interrupt;
 mod jobs;
@@ -10,4 +12,5 @@ mod malformed;
 mod other_commands;
 mod outputs;
 mod rendering;
+mod report;
 mod support;

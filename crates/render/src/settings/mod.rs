@@ -2,8 +2,10 @@
 //!
 //! The same structs are the TOML job file's tables; unknown keys are errors.
 
+mod tables;
 mod validate;
 
+pub use tables::{TomlFault, overlay, value_at};
 pub use validate::SettingsError;
 
 use lightcuts_image::{GlobalToneMapping, LocalToneMapping, ToneMapping, Transfer};

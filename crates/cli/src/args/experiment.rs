@@ -1,0 +1,35 @@
+//! Arguments of `experiment`.
+
+use super::{ProgressStyle, SearchArgs};
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// Arguments of `experiment`.
+#[derive(Debug, Args)]
+pub(crate) struct ExperimentArgs {
+    /// The experiment file, TOML: scenes, configurations, and what a report shows of them.
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) file: PathBuf,
+    /// Folder for results and pictures, made if absent [default: out/NAME]
+    ///
+    /// Renders that are finished there are not rendered again.
+    #[arg(short = 'o', long = "output", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub(crate) directory: Option<PathBuf>,
+    /// Render only what has this name: a scene, a configuration or a point; may be repeated, `*` stands for anything
+    ///
+    /// Names of one kind add up: `--only venus --only galleon --only 'cpu*'` renders two scenes, in each the
+    /// configurations that begin with `cpu`. References that are needed for comparison are rendered too.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) only: Vec<String>,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    /// Check everything and print the plan, but do not render.
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+    /// No summary and no progress; warnings and errors only.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+    /// Progress on stderr [default: bar on a terminal, else plain]
+    #[arg(long, value_name = "STYLE", value_enum)]
+    pub(crate) progress: Option<ProgressStyle>,
+}

@@ -1,0 +1,54 @@
+//! The settings of a job: tables laid over what its scene recommends.
+
+use super::fault::PlanError;
+use super::file::ExperimentFile;
+use lightcuts::Settings;
+use lightcuts::rendering::{TomlFault, overlay};
+use lightcuts::scene::SceneDesc;
+use toml::Table;
+
+/// Which tables hold for a job, by their numbers in the file.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tables {
+    pub(super) scene: usize,
+    pub(super) configuration: usize,
+    pub(super) point: Option<usize>,
+}
+
+/// Recommendations of the scene, under `[settings]`, under those of the scene, the configuration and the point, under the
+/// seed; checked, so that rendering cannot fail.
+pub(super) fn resolve(
+    file: &ExperimentFile,
+    tables: Tables,
+    scene: &SceneDesc,
+    seed: u32,
+) -> Result<Settings, PlanError> {
+    let unexpected = |message: &str| file.source.fault("settings", message, "settings as in a job file");
+    let mut table = Table::try_from(Settings::for_scene(scene)).map_err(|error| unexpected(&error.to_string()))?;
+    let layers = layers(file, tables);
+    for (_, layer) in &layers {
+        overlay(&mut table, layer);
+    }
+    let mut settings: Settings =
+        table.try_into().map_err(|error: toml::de::Error| unexpected(&TomlFault::new(&error).message))?;
+    settings.run.seed = seed;
+    settings.validate().map_err(|error| {
+        let places = layers.iter().rev().map(|(place, _)| format!("{place}.{}", error.name));
+        let culprit = places.into_iter().find(|place| file.source.has(place));
+        let place = culprit.unwrap_or_else(|| format!("scene.{}.file", tables.scene));
+        file.source.fault(&place, format!("{} is {}", error.name, error.value), &error.expected)
+    })?;
+    Ok(settings)
+}
+
+/// Each table with its place in the file, the lowest first.
+fn layers(file: &ExperimentFile, Tables { scene, configuration, point }: Tables) -> Vec<(String, &Table)> {
+    let document = &file.document;
+    let mut layers = vec![
+        ("settings".to_owned(), &document.settings),
+        (format!("scene.{scene}.settings"), &document.scene[scene].settings),
+        (format!("configuration.{configuration}.settings"), &document.configuration[configuration].settings),
+    ];
+    layers.extend(point.map(|point| (format!("point.{point}.settings"), &document.point[point].settings)));
+    layers
+}
