@@ -1,5 +1,7 @@
 //! A picture as metrics see it: light, and what a display shows of it.
 
+use rayon::prelude::*;
+
 use crate::{Image, ImageError, Transfer};
 
 /// A picture that can be measured.
@@ -16,7 +18,7 @@ impl Picture {
     /// A picture of linear light, shown by clamping to 0..=1, `transfer` and rounding to 8 bits: the code values that
     /// [`write_png`](crate::write_png) writes.
     pub fn from_linear(linear: Image, transfer: Transfer) -> Self {
-        let display = linear.map(|pixel| pixel.map(|value| f32::from(transfer.quantise(value)) / 255.0));
+        let display = code_values(&linear, transfer);
         Self { linear, display }
     }
 
@@ -26,8 +28,7 @@ impl Picture {
     /// Fails with [`ImageError::SizeMismatch`].
     pub fn developed(linear: Image, shown: &Image, transfer: Transfer) -> Result<Self, ImageError> {
         linear.expect_size_of(shown, "the developed picture")?;
-        let display = shown.map(|pixel| pixel.map(|value| f32::from(transfer.quantise(value)) / 255.0));
-        Ok(Self { linear, display })
+        Ok(Self { linear, display: code_values(shown, transfer) })
     }
 
     /// A picture of code values in 0..=1, as a PNG stores them; its light is what `transfer` makes of them.
@@ -55,4 +56,15 @@ impl Picture {
     pub fn height(&self) -> usize {
         self.linear.height()
     }
+}
+
+/// The code values of 8 bits, in 0..=1, that a display is sent for linear values. On all cores: large pictures take a power
+/// per value.
+fn code_values(linear: &Image, transfer: Transfer) -> Image {
+    let mut display = linear.clone();
+    display
+        .pixels_mut()
+        .par_iter_mut()
+        .for_each(|pixel| *pixel = pixel.map(|value| f32::from(transfer.quantise(value)) / 255.0));
+    display
 }
