@@ -110,8 +110,8 @@ pub(crate) struct PdiffArgs {
     pub(crate) downsample: u32,
     /// Order in which the channels are taken.
     ///
-    /// The original program takes red for blue since its version 1.1.1, so that published figures, those of the thesis
-    /// among them, are those of `bgr`. `rgb` is what the paper describes.
+    /// The published program takes red for blue: its figures, those for the thesis' pictures among them, are those
+    /// of `bgr`. `rgb` is what the paper describes.
     #[arg(long, value_enum, default_value_t = ChannelOrder::Bgr)]
     pub(crate) pdiff_channels: ChannelOrder,
 }

@@ -41,8 +41,8 @@ pub struct PerceptualDiff {
     pub downsample: u32,
     /// Whether red and blue are taken for each other.
     ///
-    /// The published program has done so since it reads files through an image library (version 1.1.1), and figures in
-    /// the literature have it in them; `false` is what Yee 2004 describes.
+    /// The figures of the published program come out only so, those of its version 1.1.1 for the thesis' pictures among
+    /// them; `false` is what Yee 2004 describes.
     pub swap_red_blue: bool,
 }
 
