@@ -83,14 +83,14 @@ pub(super) fn all(
     scenes: &[PlannedScene],
     conditions: &Conditions<'_>,
 ) -> Result<Vec<PlannedJob>, PlanError> {
-    let mut jobs = Jobs { file, conditions, list: Vec::new() };
+    let mut jobs = Jobs { file, conditions, list: Vec::new(), at_last_point: 0..0 };
     for (i, scene) in scenes.iter().enumerate() {
         let points = points(file, &scene.name);
         let start = jobs.list.len();
-        jobs.add_point(scene, i, points.last().copied().flatten(), Place::LastPoint, start..start)?;
-        let at_last_point = start..jobs.list.len();
+        jobs.add_point(scene, i, points.last().copied().flatten(), Place::LastPoint)?;
+        jobs.at_last_point = start..jobs.list.len();
         for point in points {
-            jobs.add_point(scene, i, point, Place::EveryPoint, at_last_point.clone())?;
+            jobs.add_point(scene, i, point, Place::EveryPoint)?;
         }
     }
     Ok(repeated(jobs.list, file.document.runs, scenes, conditions))
@@ -101,23 +101,22 @@ struct Jobs<'a> {
     file: &'a ExperimentFile,
     conditions: &'a Conditions<'a>,
     list: Vec<PlannedJob>,
+    /// Those of the current scene that are rendered at its last point alone.
+    at_last_point: Range<usize>,
 }
 
 impl Jobs<'_> {
-    /// Adds a job for each seed and each configuration that is rendered at `place`; `at_last_point` are the scene's jobs
-    /// that are rendered there alone.
+    /// Adds a job for each seed and each configuration that is rendered at `place`; `i` is the scene's number.
     fn add_point(
         &mut self,
         scene: &PlannedScene,
-        number: usize,
+        i: usize,
         point: Option<usize>,
         place: Place,
-        at_last_point: Range<usize>,
     ) -> Result<(), PlanError> {
         let configurations = configurations(self.file, &scene.name, place);
         for &seed in &self.file.document.seeds {
-            let tables = Tables { scene: number, configuration: 0, point };
-            self.add(scene, tables, &configurations, seed, at_last_point.clone())?;
+            self.add(scene, Tables { scene: i, configuration: 0, point }, &configurations, seed)?;
             check::jobs(&self.file.source, self.list.len().saturating_mul(self.file.document.runs as usize))?;
         }
         Ok(())
@@ -130,7 +129,6 @@ impl Jobs<'_> {
         tables: Tables,
         configurations: &[usize],
         seed: u32,
-        at_last_point: Range<usize>,
     ) -> Result<(), PlanError> {
         let start = self.list.len();
         for &configuration in configurations {
@@ -140,7 +138,7 @@ impl Jobs<'_> {
             // A reference without a device has no picture.
             let number = |name: &String| {
                 let is = |job: &PlannedJob| job.configuration == *name && job.settings.run.seed == seed;
-                (start..self.list.len()).chain(at_last_point.clone()).find(|&i| is(&self.list[i]))
+                (start..self.list.len()).chain(self.at_last_point.clone()).find(|&i| is(&self.list[i]))
             };
             let mut job = PlannedJob {
                 hash: String::new(),

@@ -4,7 +4,7 @@ use super::{IMAGES, RunError, Texts};
 use crate::plan::PlannedJob;
 use crate::record::Row;
 use lightcuts::image::{
-    Image, ImageError, Layers, Picture, read_exr, read_exr_attributes, write_exr, write_png_with_text,
+    Image, ImageError, Layers, Picture, Transfer, read_exr, read_exr_attributes, write_exr, write_png_with_text,
 };
 use lightcuts::rendering::Display;
 use std::path::Path;
@@ -38,17 +38,16 @@ pub(super) fn are_of(directory: &Path, row: &Row) -> bool {
     there && picture().is_some_and(|picture| picture == row.picture)
 }
 
-/// Writes the picture as it is displayed.
+/// Writes what a display shows of a picture: the code values that are measured.
 pub(super) fn write_displayed(
     path: &Path,
-    linear: &Image,
+    picture: &Picture,
     job: &PlannedJob,
     texts: &Texts<'_>,
 ) -> Result<(), ImageError> {
-    let display = &job.settings.display;
     let texts = texts(job, path);
     let texts: Vec<(&str, &str)> = texts.iter().map(|(name, text)| (*name, text.as_str())).collect();
-    write_png_with_text(path, &display.operator().apply(linear), display.transfer, &texts)
+    write_png_with_text(path, picture.display(), Transfer::Linear, &texts)
 }
 
 /// Writes the picture's light and its hash. Of all files of a job this is the last: it vouches for the others.

@@ -64,8 +64,8 @@ impl Studio<'_> {
     /// Writes the picture and compares it with those of its references.
     fn store(&self, job: &PlannedJob, linear: Image, hash: &str, rows: &[Option<Row>]) -> Result<Stored, RunError> {
         let names = Names::of(job);
-        pictures::write_displayed(&self.directory.join(&names.png), &linear, job, self.texts)?;
         let picture = pictures::developed(linear, &job.settings.display)?;
+        pictures::write_displayed(&self.directory.join(&names.png), &picture, job, self.texts)?;
         let mut comparisons = BTreeMap::new();
         for &reference in &job.references {
             let reference_job = &self.plan.jobs[reference];
