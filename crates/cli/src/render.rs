@@ -1,6 +1,6 @@
 //! The command `render`: plan, render, write.
 
-use crate::args::{PerformanceArgs, RenderArgs, SimdChoice};
+use crate::args::{PerformanceArgs, RenderArgs, SimdChoice, ThreadArgs};
 use crate::exit::{Exit, Failure};
 use crate::fault::{fault, span_at};
 use crate::job::{JOB_ATTRIBUTE, Job, VERSION_ATTRIBUTE, require_regular};
@@ -17,11 +17,11 @@ const COMPLETE_ATTRIBUTE: &str = "lightcuts:complete";
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
-    start_threads(args.performance.threads)?;
+    start_threads(&args.performance.threads)?;
     interrupt::listen();
     let plan = Plan::new(args)?;
     if args.output.dry_run {
-        return dry_run(plan, args.output.quiet);
+        return dry_run(plan, args.output.talk.quiet);
     }
     memory::require_for(plan.job.settings.image)?;
     let options = options(&plan, &args.performance)?;
@@ -30,11 +30,11 @@ pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
         console::note("lightcuts: nothing was rendered; nothing is written");
         return Ok(Exit::Interrupted);
     }
-    let progress = Progress::new(args.output.progress, args.output.quiet, logs);
+    let progress = Progress::new(args.output.talk.progress, args.output.talk.quiet, logs);
     let rendering = lightcuts::render(&world, &plan.job.settings, &options, &progress)
         .map_err(|error| Failure::usage(error.to_string(), "see `lightcuts render --help`"))?;
     progress.finish();
-    finish(&plan, &rendering, args.output.quiet)
+    finish(&plan, &rendering, args.output.talk.quiet)
 }
 
 /// Writes the outputs and sums up.
@@ -69,9 +69,9 @@ fn dry_run(mut plan: Plan, quiet: bool) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// Starts this many threads; 0 is one per processor.
-pub(crate) fn start_threads(threads: u16) -> Result<(), Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global();
+/// Starts the threads of this process.
+pub(crate) fn start_threads(args: &ThreadArgs) -> Result<(), Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(args.threads)).build_global();
     pool.map_err(|error| Failure::usage(format!("cannot start threads: {error}"), "ask for fewer with --threads"))
 }
 

@@ -1,7 +1,6 @@
 //! Arguments of `compare`.
 
-use super::ProgressStyle;
-use super::render::MAX_THREADS;
+use super::{ProgressStyle, ThreadArgs};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum, ValueHint};
 use lightcuts::image::Transfer;
@@ -147,9 +146,8 @@ pub(crate) struct CompareOutputArgs {
     /// Progress on stderr [default: for large pictures a bar on a terminal, else plain]
     #[arg(long, value_name = "STYLE", value_enum)]
     pub(crate) progress: Option<ProgressStyle>,
-    /// Number of threads; 0 is one per processor.
-    #[arg(short = 'j', long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=MAX_THREADS))]
-    pub(crate) threads: u16,
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
 }
 
 /// Transfers as words.

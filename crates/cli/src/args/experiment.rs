@@ -1,6 +1,6 @@
 //! Arguments of `experiment`.
 
-use super::{ProgressStyle, SearchArgs};
+use super::{SearchArgs, TalkArgs};
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
@@ -26,10 +26,6 @@ pub(crate) struct ExperimentArgs {
     /// Check everything and print the plan, but do not render.
     #[arg(long)]
     pub(crate) dry_run: bool,
-    /// No summary and no progress; warnings and errors only.
-    #[arg(short, long)]
-    pub(crate) quiet: bool,
-    /// Progress on stderr [default: bar on a terminal, else plain]
-    #[arg(long, value_name = "STYLE", value_enum)]
-    pub(crate) progress: Option<ProgressStyle>,
+    #[command(flatten)]
+    pub(crate) talk: TalkArgs,
 }

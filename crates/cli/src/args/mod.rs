@@ -14,7 +14,9 @@ mod value;
 
 pub(crate) use compare::{ChannelOrder, CompareArgs, InputArgs};
 pub(crate) use experiment::ExperimentArgs;
-pub(crate) use render::{JobArgs, OutputArgs, PerformanceArgs, ProgressStyle, RenderArgs, SimdChoice};
+pub(crate) use render::{
+    JobArgs, OutputArgs, PerformanceArgs, ProgressStyle, RenderArgs, SimdChoice, TalkArgs, ThreadArgs,
+};
 pub(crate) use report::ReportArgs;
 
 use clap::{Args, Parser, Subcommand, ValueHint};

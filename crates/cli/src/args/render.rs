@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
 
 /// Most threads that can be asked for; more than any machine has, fewer than start to hurt.
-pub(super) const MAX_THREADS: i64 = 1024;
+const MAX_THREADS: i64 = 1024;
 
 /// Arguments of `render`.
 #[derive(Debug, Default, Args)]
@@ -46,6 +46,13 @@ pub(crate) struct OutputArgs {
     /// Check everything and write the job if asked to, but do not render.
     #[arg(long)]
     pub(crate) dry_run: bool,
+    #[command(flatten)]
+    pub(crate) talk: TalkArgs,
+}
+
+/// What commands that render say while and after they do.
+#[derive(Debug, Default, Args)]
+pub(crate) struct TalkArgs {
     /// No summary and no progress; warnings and errors only.
     #[arg(short, long)]
     pub(crate) quiet: bool,
@@ -75,12 +82,19 @@ pub(crate) struct JobArgs {
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Performance")]
 pub(crate) struct PerformanceArgs {
-    /// Number of threads; 0 is one per processor.
-    #[arg(short = 'j', long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=MAX_THREADS))]
-    pub(crate) threads: u16,
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
     /// Vector instructions of the processor; `off` to track down a fault.
     #[arg(long, value_enum, default_value_t = SimdChoice::Auto)]
     pub(crate) simd: SimdChoice,
+}
+
+/// How many cores are used.
+#[derive(Debug, Default, Args)]
+pub(crate) struct ThreadArgs {
+    /// Number of threads; 0 is one per processor.
+    #[arg(short = 'j', long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=MAX_THREADS))]
+    pub(crate) threads: u16,
 }
 
 /// Styles of progress.

@@ -48,7 +48,7 @@ pub(crate) fn run(args: &CompareArgs, logs: bool) -> Result<Exit, Failure> {
 }
 
 fn judge(args: &CompareArgs, logs: bool) -> Result<Exit, Failure> {
-    start_threads(args.output.threads)?;
+    start_threads(&args.output.threads)?;
     let plan = Plan::new(args)?;
     let inputs = Inputs::read(args)?;
     let comparison = plan.measure(args, &inputs, logs)?;

@@ -35,12 +35,12 @@ pub(crate) fn run(args: &ExperimentArgs, logs: bool) -> Result<Exit, Failure> {
     interrupt::listen();
     let experiment = Experiment::new(args)?;
     if args.dry_run {
-        return experiment.dry_run(args.quiet).map(|()| Exit::Done);
+        return experiment.dry_run(args.talk.quiet).map(|()| Exit::Done);
     }
     experiment.check_memory()?;
     let Experiment { plan, selection, directory, .. } = &experiment;
     let mut runner = Runner::open(plan, directory).map_err(|error| run_failure(error, directory))?;
-    let progress = Progress::new(args.progress, args.quiet, logs);
+    let progress = Progress::new(args.talk.progress, args.talk.quiet, logs);
     let texts = |job: &PlannedJob, path: &Path| experiment.texts(job, path);
     let outcome = runner.run(selection, &texts, &progress);
     progress.finish();
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &ExperimentArgs, logs: bool) -> Result<Exit, Failure> {
         console::note(&text::interrupted(&outcome, selection.len(), directory));
         return Ok(Exit::Interrupted);
     }
-    if !args.quiet {
+    if !args.talk.quiet {
         console::print(text::summary(plan, &outcome, directory).as_bytes())?;
     }
     Ok(Exit::Done)
