@@ -8,9 +8,11 @@ mod docs;
 mod gallery;
 mod model_files;
 mod models;
+mod packages;
 mod project;
 mod tally;
 mod test;
+mod vulkan;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};

@@ -1,8 +1,9 @@
-//! `cargo xtask test`: all tests, with whatever they need: a browser for those of pages.
+//! `cargo xtask test`: all tests, with what they need: a browser for those of pages, a driver for those of the GPU.
 
 use crate::browser;
 use crate::project::{self, shown};
 use crate::tally::Tally;
+use crate::vulkan;
 use anyhow::{Context as _, Result, bail};
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, Stdio};
@@ -10,6 +11,7 @@ use std::process::{Command, Stdio};
 /// Runs the workspace's tests and documentation examples.
 pub(crate) fn run() -> Result<()> {
     browser::provide();
+    vulkan::provide();
     if has_nextest() {
         println!("tests run with cargo-nextest, documentation examples with cargo test");
         // First, so that the last line is that of nextest.
@@ -26,6 +28,9 @@ fn cargo() -> Command {
     let mut command = project::cargo();
     if browser::is_required() {
         command.env(browser::REQUIRED, "1");
+    }
+    if vulkan::is_required() {
+        command.env(vulkan::REQUIRED, "1");
     }
     command
 }

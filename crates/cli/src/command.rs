@@ -2,7 +2,7 @@
 
 use crate::args::{Cli, Command};
 use crate::exit::{Exit, Failure};
-use crate::{compare, console, experiment, info, render, report, shell};
+use crate::{compare, console, devices, drivers, experiment, info, render, report, shell};
 use std::io::IsTerminal;
 use tracing_subscriber::EnvFilter;
 
@@ -10,9 +10,13 @@ use tracing_subscriber::EnvFilter;
 pub(crate) fn run(cli: &Cli) -> Exit {
     console::set_up();
     start_logging(cli.verbose);
+    if matches!(cli.command, Command::Render(_) | Command::Devices(_) | Command::Experiment(_)) {
+        drivers::hush();
+    }
     let result = match &cli.command {
         Command::Render(args) => render::run(args, cli.verbose > 0),
         Command::Info(args) => info::run(args),
+        Command::Devices(args) => devices::run(args),
         Command::Compare(args) => compare::run(args, cli.verbose > 0),
         Command::Experiment(args) => experiment::run(args, cli.verbose > 0),
         Command::Report(args) => report::run(args),

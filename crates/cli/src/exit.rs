@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | 0 | done |
 //! | 1 | the render finished, but an output could not be written |
-//! | 2 | bad usage, job file or parameters |
+//! | 2 | bad usage, job file or parameters; a device that is not there |
 //! | 3 | a scene, model, texture, picture or VPL file cannot be read or is malformed |
 //! | 130 | interrupted; what was rendered so far is written |
 //!
@@ -26,7 +26,7 @@ pub(crate) enum Exit {
     Done,
     /// An output could not be written.
     NotWritten,
-    /// Bad usage, job file or parameters.
+    /// Bad usage, job file or parameters; a device that is not there.
     Usage,
     /// An input cannot be read.
     Input,

@@ -8,6 +8,8 @@ mod command;
 mod compare;
 
 mod console;
+mod devices;
+mod drivers;
 mod exit;
 mod experiment;
 mod fault;

@@ -98,8 +98,20 @@ impl Monitor for Progress {
         });
     }
 
+    fn note(&self, text: &str) {
+        self.with(|state| tell_note(self.style, &state.bar, text));
+    }
+
     fn cancelled(&self) -> bool {
         interrupt::came()
+    }
+}
+
+/// Tells what a person should know whatever the style, above the bar if there is one.
+pub(crate) fn tell_note(style: ProgressStyle, bar: &ProgressBar, text: &str) {
+    match style {
+        ProgressStyle::Json => console::note(&serde_json::json!({ "note": text }).to_string()),
+        _ => bar.suspend(|| console::note(&format!("lightcuts: {text}"))),
     }
 }
 

@@ -8,7 +8,9 @@ use crate::outputs::{Kind, job_text};
 use crate::plan::Plan;
 use crate::progress::Progress;
 use crate::summary::{Statistics, summary};
-use crate::{console, interrupt, memory};
+use crate::{console, devices, interrupt, memory};
+use lightcuts::device::Device;
+use lightcuts::gpu::Fleet;
 use lightcuts::{Options, Rendering, Simd, VplCsvError, World, image, vpls_from_csv, vpls_to_csv};
 use std::path::Path;
 
@@ -19,6 +21,7 @@ const COMPLETE_ATTRIBUTE: &str = "lightcuts:complete";
 pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
     start_threads(&args.performance.threads)?;
     interrupt::listen();
+    let assignment = devices::assigned(&args.performance.devices)?;
     let plan = Plan::new(args)?;
     if args.output.dry_run {
         return dry_run(plan, args.output.talk.quiet);
@@ -31,18 +34,20 @@ pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
         return Ok(Exit::Interrupted);
     }
     let progress = Progress::new(args.output.talk.progress, args.output.talk.quiet, logs);
-    let rendering = lightcuts::render(&world, &plan.job.settings, &options, &progress)
+    let fleet = devices::open(&assignment, &world, options.simd, &args.performance.devices, &progress)?;
+    let rendering = lightcuts::render_on(&world, &plan.job.settings, &options, &fleet.stations(), &progress)
         .map_err(|error| Failure::usage(error.to_string(), "see `lightcuts render --help`"))?;
     progress.finish();
-    finish(&plan, &rendering, args.output.talk.quiet)
+    devices::log(&fleet);
+    finish(&plan, &rendering, &fleet, args.output.talk.quiet)
 }
 
 /// Writes the outputs and sums up.
-fn finish(plan: &Plan, rendering: &Rendering, quiet: bool) -> Result<Exit, Failure> {
-    let statistics = Statistics::new(plan, rendering);
+fn finish(plan: &Plan, rendering: &Rendering, fleet: &Fleet<'_>, quiet: bool) -> Result<Exit, Failure> {
+    let statistics = Statistics::new(plan, rendering, fleet);
     let (written, exit) = plan.outputs.write(|kind, path| match kind {
         Kind::Exr => write_exr(path, rendering, &plan.job),
-        Kind::Png => write_png(path, rendering, &plan.job),
+        Kind::Png => write_png(path, rendering, &plan.job, fleet.stations().develop),
         Kind::Stats => write(path, &statistics.to_json()?),
         Kind::Vpls => write(path, &vpls_to_csv(&rendering.vpls)),
         Kind::Job => write(path, &job_text(&plan.job, path)?),
@@ -109,11 +114,12 @@ fn write_exr(path: &Path, rendering: &Rendering, job: &Job) -> Result<(), Failur
     image::write_exr(path, &layers).map_err(Failure::output)
 }
 
-fn write_png(path: &Path, rendering: &Rendering, job: &Job) -> Result<(), Failure> {
+fn write_png(path: &Path, rendering: &Rendering, job: &Job, device: &dyn Device) -> Result<(), Failure> {
     let text = job_text(job, path)?;
     let texts: Vec<_> = [(JOB_ATTRIBUTE, text.as_str())].into_iter().chain(remarks(rendering)).collect();
     let display = &job.settings.display;
-    image::write_png_with_text(path, &rendering.displayed(display), display.transfer, &texts).map_err(Failure::output)
+    let shown = rendering.displayed_on(display, device);
+    image::write_png_with_text(path, &shown, display.transfer, &texts).map_err(Failure::output)
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {

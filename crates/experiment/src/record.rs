@@ -142,7 +142,7 @@ pub struct ComparisonRow {
 /// A device.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeviceInfo {
-    /// `cpu` or `gpu`.
+    /// `cpu`, `gpu`, or `software gpu`: a graphics driver that computes on the processor.
     pub kind: String,
     /// Name of the processor or card.
     pub name: String,

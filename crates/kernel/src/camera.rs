@@ -1,7 +1,7 @@
 //! The thesis' camera: a view plane with a fixed pixel pitch, rays that start on it.
 
 use crate::Rules;
-use crate::ray::{ORIGINAL_EPSILON, Ray, normalize};
+use crate::ray::{ORIGINAL_EPSILON, Ray, normalize_or_zero};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -11,7 +11,7 @@ pub const PIXEL_PITCH: f32 = 0.01;
 /// Pixels across the thesis' view plane.
 pub const THESIS_SIZE: u32 = 512;
 
-/// The view. 80 bytes.
+/// The view. 64 bytes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Camera {
@@ -39,7 +39,7 @@ pub fn camera_ray(camera: &Camera, i: u32, j: u32, shift: [f32; 2], rules: Rules
     let pixel = camera.center + camera.right * on_plane(i, camera.width) + camera.up * on_plane(j, camera.height);
     let origin = pixel + camera.right * (shift[0] * camera.pitch) + camera.up * (shift[1] * camera.pitch);
     let direction = if camera.eye_distance > 0.0 {
-        normalize(origin - (camera.center - camera.view * camera.eye_distance))
+        normalize_or_zero(origin - (camera.center - camera.view * camera.eye_distance))
     } else {
         camera.view
     };

@@ -1,41 +1,39 @@
-//! Rays against the primitives: triangles (in blocks of eight), spheres and squares.
+//! Rays against the primitives: triangles, spheres and squares.
 
 use crate::Rules;
-use crate::ray::{Hit, NONE, ORIGINAL_EPSILON, Ray};
+use crate::ray::{Hit, ORIGINAL_EPSILON, Ray};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-
-/// Triangles of one block; also the width of the SIMD registers that test them.
-pub const LANES: usize = 8;
 
 /// Least determinant of a triangle hit in the original, in its units of volume: thin triangles can vanish.
 pub const ORIGINAL_MIN_DETERMINANT: f32 = 0.001;
 
-/// Eight triangles, component by component: corner, two edges, primitive. Empty lanes have zero edges, which no ray hits.
+/// Kind of primitive: a triangle.
+pub const TRIANGLE: u32 = 0;
+/// Kind of primitive: a sphere.
+pub const SPHERE: u32 = 1;
+/// Kind of primitive: a square.
+pub const SQUARE: u32 = 2;
+
+/// A triangle as rays see it. 48 bytes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct TriangleBlock {
-    /// First corners: x of all lanes, y of all lanes, z of all lanes.
-    pub corner: [[f32; LANES]; 3],
+pub struct Triangle {
+    /// First corner, in scene units.
+    pub corner: Vec3,
+    /// Primitive in file order.
+    pub primitive: u32,
     /// Second corner minus first.
-    pub edge1: [[f32; LANES]; 3],
+    pub edge1: Vec3,
+    /// Unused; keeps the vectors at multiples of 16 bytes.
+    pub padding0: u32,
     /// Third corner minus first.
-    pub edge2: [[f32; LANES]; 3],
-    /// Primitive of each lane, or [`NONE`].
-    pub primitive: [u32; LANES],
+    pub edge2: Vec3,
+    /// Unused.
+    pub padding1: u32,
 }
 
-impl TriangleBlock {
-    /// A block without triangles.
-    pub const EMPTY: Self = Self {
-        corner: [[0.0; LANES]; 3],
-        edge1: [[0.0; LANES]; 3],
-        edge2: [[0.0; LANES]; 3],
-        primitive: [NONE; LANES],
-    };
-}
-
-/// A sphere.
+/// A sphere. 32 bytes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Sphere {
@@ -45,9 +43,11 @@ pub struct Sphere {
     pub radius: f32,
     /// Primitive in file order.
     pub primitive: u32,
+    /// Unused; keeps the record a multiple of 16 bytes.
+    pub padding: [u32; 3],
 }
 
-/// A rectangle around a centre.
+/// A rectangle around a centre. 64 bytes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Square {
@@ -77,25 +77,24 @@ pub fn min_determinant(rules: Rules) -> f32 {
     }
 }
 
-/// The triangle of one lane of a block (Moeller & Trumbore 1997). Arithmetic in the order of the formulas, no fma, so
-/// that SIMD lanes and other devices give the same bits.
-pub fn intersect_triangle(block: &TriangleBlock, lane: usize, ray: &Ray, min_determinant: f32) -> Option<Hit> {
-    let vector = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
-    let (edge1, edge2) = (vector(&block.edge1), vector(&block.edge2));
+/// A triangle (Moeller & Trumbore 1997). Arithmetic in the order of the formulas, no fma, so that SIMD lanes and other
+/// devices give the same bits.
+pub fn intersect_triangle(triangle: &Triangle, ray: &Ray, min_determinant: f32) -> Option<Hit> {
+    let Triangle { corner, edge1, edge2, .. } = *triangle;
     let p = ray.direction.cross(edge2);
     let determinant = edge1.dot(p);
     if determinant.abs() < min_determinant {
         return None;
     }
     let inverse = 1.0 / determinant;
-    let to_origin = ray.origin - vector(&block.corner);
+    let to_origin = ray.origin - corner;
     let u = to_origin.dot(p) * inverse;
     let q = to_origin.cross(edge1);
     let v = ray.direction.dot(q) * inverse;
     let t = edge2.dot(q) * inverse;
     // NaN fails every comparison and so misses.
     let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > ray.t_min && t < ray.t_max;
-    inside.then(|| Hit { t, primitive: block.primitive[lane], u, v })
+    inside.then_some(Hit { t, primitive: triangle.primitive, u, v })
 }
 
 /// A sphere. Repaired: the nearest root between the ray's ends, from a form that keeps its precision for far, small
@@ -168,7 +167,7 @@ mod tests {
 
     #[test]
     fn spheres_from_outside_and_inside() {
-        let sphere = Sphere { center: Vec3::ZERO, radius: 2.0, primitive: 3 };
+        let sphere = Sphere { center: Vec3::ZERO, radius: 2.0, primitive: 3, padding: [0; 3] };
         for rules in [Rules::Original, Rules::Repaired] {
             let outside = intersect_sphere(&sphere, &ray(Vec3::Z * 5.0, Vec3::NEG_Z), rules).unwrap();
             assert_eq!((outside.t, outside.primitive), (3.0, 3));
@@ -181,14 +180,14 @@ mod tests {
 
     #[test]
     fn a_far_small_sphere_keeps_its_precision() {
-        let sphere = Sphere { center: Vec3::ZERO, radius: 0.01, primitive: 0 };
+        let sphere = Sphere { center: Vec3::ZERO, radius: 0.01, primitive: 0, padding: [0; 3] };
         let hit = intersect_sphere(&sphere, &ray(Vec3::Z * 10_000.0, Vec3::NEG_Z), Rules::Repaired).unwrap();
         assert!((hit.t - 9_999.99).abs() < 0.002);
     }
 
     #[test]
     fn a_root_just_above_zero_hides_the_original_sphere() {
-        let sphere = Sphere { center: Vec3::ZERO, radius: 1.0, primitive: 0 };
+        let sphere = Sphere { center: Vec3::ZERO, radius: 1.0, primitive: 0, padding: [0; 3] };
         let start = ray(Vec3::X * 1.0005, Vec3::NEG_X);
         assert!(intersect_sphere(&sphere, &start, Rules::Original).is_none());
         assert!(intersect_sphere(&sphere, &start, Rules::Repaired).is_some());
@@ -216,10 +215,9 @@ mod tests {
 
     #[test]
     fn triangles_report_barycentrics() {
-        let mut block = TriangleBlock::EMPTY;
-        (block.edge1[0][2], block.edge2[1][2], block.primitive[2]) = (4.0, 4.0, 9);
+        let triangle = Triangle { edge1: Vec3::X * 4.0, edge2: Vec3::Y * 4.0, primitive: 9, ..Triangle::zeroed() };
         let r = ray(Vec3::new(1.0, 2.0, 1.0), Vec3::NEG_Z);
-        assert_eq!(intersect_triangle(&block, 2, &r, 0.001), Some(Hit { t: 1.0, primitive: 9, u: 0.25, v: 0.5 }));
-        assert_eq!(intersect_triangle(&block, 0, &r, f32::MIN_POSITIVE), None);
+        assert_eq!(intersect_triangle(&triangle, &r, 0.001), Some(Hit { t: 1.0, primitive: 9, u: 0.25, v: 0.5 }));
+        assert_eq!(intersect_triangle(&Triangle::zeroed(), &r, f32::MIN_POSITIVE), None);
     }
 }

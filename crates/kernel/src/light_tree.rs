@@ -1,58 +1,14 @@
-//! The light tree: VPLs in blocks of eight, nodes of eight clusters each, bounds on the thesis' relevance.
+//! Clusters of VPLs and bounds on the thesis' relevance: what every light tree decides with.
 
 use crate::light::Vpl;
-use crate::ray::normalize;
-use bytemuck::{Pod, Zeroable};
+use crate::ray::normalize_or_zero;
 use glam::Vec3;
-
-pub use crate::intersect::LANES;
 
 /// Relative margin by which a bound must miss the threshold before it decides for a whole cluster: above the rounding
 /// error of the bounds and of [`is_relevant`] together.
 pub const BOUND_MARGIN: f32 = 1e-3;
 
-/// Eight VPLs, component by component, in tree order. Empty lanes are black and attenuated to nothing.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct VplBlock {
-    /// Positions: x of all lanes, y of all lanes, z of all lanes.
-    pub position: [[f32; LANES]; 3],
-    /// Unit directions.
-    pub direction: [[f32; LANES]; 3],
-    /// Diffuse colours.
-    pub diffuse: [[f32; LANES]; 3],
-    /// Factors on the contribution.
-    pub attenuation: [f32; LANES],
-    /// Lengths of the diffuse colours.
-    pub intensity: [f32; LANES],
-}
-
-impl VplBlock {
-    /// The VPL of one lane.
-    pub fn vpl(&self, lane: usize) -> Vpl {
-        let vector = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
-        Vpl {
-            position: vector(&self.position),
-            direction: vector(&self.direction),
-            diffuse: vector(&self.diffuse),
-            attenuation: self.attenuation[lane],
-            ..Vpl::default()
-        }
-    }
-
-    /// Puts a VPL into a lane.
-    pub fn set(&mut self, lane: usize, vpl: &Vpl) {
-        for axis in 0..3 {
-            self.position[axis][lane] = vpl.position[axis];
-            self.direction[axis][lane] = vpl.direction[axis];
-            self.diffuse[axis][lane] = vpl.diffuse[axis];
-        }
-        self.attenuation[lane] = vpl.attenuation;
-        self.intensity[lane] = vpl.intensity();
-    }
-}
-
-/// A cluster of VPLs: a range of blocks with what they have in common.
+/// What the VPLs of a cluster have in common.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightCluster {
     /// Lower corner of the box around the positions.
@@ -69,85 +25,6 @@ pub struct LightCluster {
     pub min_intensity: f32,
     /// Greatest intensity.
     pub max_intensity: f32,
-    /// First block.
-    pub first_block: u32,
-    /// Number of blocks.
-    pub block_count: u32,
-    /// Number of VPLs.
-    pub vpl_count: u32,
-    /// Its node, or 0 for a single block (the root is nobody's child).
-    pub node: u32,
-}
-
-/// Up to eight clusters, component by component, in the order of their blocks. Empty lanes are zero.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct LightNode {
-    /// Lower corners of the boxes.
-    pub lower: [[f32; LANES]; 3],
-    /// Upper corners of the boxes.
-    pub upper: [[f32; LANES]; 3],
-    /// Axes of the cones.
-    pub axis: [[f32; LANES]; 3],
-    /// Cosines of the cones' half angles.
-    pub cos_spread: [f32; LANES],
-    /// Sines of the cones' half angles.
-    pub sin_spread: [f32; LANES],
-    /// Least intensities.
-    pub min_intensity: [f32; LANES],
-    /// Greatest intensities.
-    pub max_intensity: [f32; LANES],
-    /// First blocks.
-    pub first_block: [u32; LANES],
-    /// Numbers of blocks.
-    pub block_count: [u32; LANES],
-    /// Numbers of VPLs.
-    pub vpl_count: [u32; LANES],
-    /// Nodes of the clusters, or 0 for single blocks.
-    pub node: [u32; LANES],
-    /// Number of clusters; they stand in the first lanes.
-    pub count: u32,
-    /// Unused; keeps the record a multiple of 16 bytes.
-    pub padding: [u32; 3],
-}
-
-impl LightNode {
-    /// The cluster of one lane.
-    pub fn cluster(&self, lane: usize) -> LightCluster {
-        let vector = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
-        LightCluster {
-            lower: vector(&self.lower),
-            upper: vector(&self.upper),
-            axis: vector(&self.axis),
-            cos_spread: self.cos_spread[lane],
-            sin_spread: self.sin_spread[lane],
-            min_intensity: self.min_intensity[lane],
-            max_intensity: self.max_intensity[lane],
-            first_block: self.first_block[lane],
-            block_count: self.block_count[lane],
-            vpl_count: self.vpl_count[lane],
-            node: self.node[lane],
-        }
-    }
-
-    /// Appends a cluster; there is room for eight.
-    pub fn push(&mut self, cluster: &LightCluster) {
-        let lane = self.count as usize;
-        self.count += 1;
-        for axis in 0..3 {
-            self.lower[axis][lane] = cluster.lower[axis];
-            self.upper[axis][lane] = cluster.upper[axis];
-            self.axis[axis][lane] = cluster.axis[axis];
-        }
-        self.cos_spread[lane] = cluster.cos_spread;
-        self.sin_spread[lane] = cluster.sin_spread;
-        self.min_intensity[lane] = cluster.min_intensity;
-        self.max_intensity[lane] = cluster.max_intensity;
-        self.first_block[lane] = cluster.first_block;
-        self.block_count[lane] = cluster.block_count;
-        self.vpl_count[lane] = cluster.vpl_count;
-        self.node[lane] = cluster.node;
-    }
 }
 
 /// Whether the thesis' relevance of a VPL for a point (Eq. 4.2), cosine at the light times intensity over squared
@@ -155,7 +32,7 @@ impl LightNode {
 pub fn is_relevant(vpl: &Vpl, intensity: f32, point: Vec3, threshold: f32) -> bool {
     let to_light = vpl.position - point;
     // Without a division: this is asked for every VPL that bounds cannot decide about.
-    (-vpl.direction.dot(normalize(to_light))).max(0.0) * intensity >= threshold * to_light.dot(to_light)
+    (-vpl.direction.dot(normalize_or_zero(to_light))).max(0.0) * intensity >= threshold * to_light.dot(to_light)
 }
 
 /// Bounds on the relevance of a cluster's VPLs for a point, up to [`BOUND_MARGIN`], as fractions without the division:

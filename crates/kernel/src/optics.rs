@@ -4,7 +4,7 @@ use crate::Rules;
 use glam::Vec3;
 
 /// The direction mirrored at a surface with this normal; the length stays.
-pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
+pub fn reflect_at(direction: Vec3, normal: Vec3) -> Vec3 {
     direction - normal * (2.0 * normal.dot(direction))
 }
 
@@ -12,7 +12,7 @@ pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
 /// that enters against the normal.
 ///
 /// The original does not invert the ratio for a ray that leaves.
-pub fn refract(direction: Vec3, normal: Vec3, ratio: f32, rules: Rules) -> Option<Vec3> {
+pub fn refract_at(direction: Vec3, normal: Vec3, ratio: f32, rules: Rules) -> Option<Vec3> {
     let leaving = direction.dot(normal) >= 0.0;
     let facing = if leaving { -normal } else { normal };
     let ratio = if leaving && rules == Rules::Repaired { 1.0 / ratio } else { ratio };
@@ -29,23 +29,23 @@ mod tests {
 
     #[test]
     fn mirrors_keep_the_angle() {
-        assert!((reflect(Vec3::new(HALF, -HALF, 0.0), Vec3::Y) - Vec3::new(HALF, HALF, 0.0)).length() < 1e-6);
+        assert!((reflect_at(Vec3::new(HALF, -HALF, 0.0), Vec3::Y) - Vec3::new(HALF, HALF, 0.0)).length() < 1e-6);
     }
 
     #[test]
     fn snell_holds_and_reverses() {
         let direction = Vec3::new(HALF, -HALF, 0.0);
-        let inside = refract(direction, Vec3::Y, 0.5, Rules::Repaired).unwrap();
+        let inside = refract_at(direction, Vec3::Y, 0.5, Rules::Repaired).unwrap();
         assert!((inside.x - 0.5 * HALF).abs() < 1e-6 && (inside.length() - 1.0).abs() < 1e-6);
         // Out at the bottom of a slab, whose outward normal points down: parallel to the way in.
-        let outside = refract(inside, Vec3::NEG_Y, 0.5, Rules::Repaired).unwrap();
+        let outside = refract_at(inside, Vec3::NEG_Y, 0.5, Rules::Repaired).unwrap();
         assert!((outside - direction).length() < 1e-6);
     }
 
     #[test]
     fn total_reflection_has_no_refracted_ray() {
         let grazing = Vec3::new(0.9, (1.0_f32 - 0.81).sqrt(), 0.0);
-        assert!(refract(grazing, Vec3::Y, 0.5, Rules::Repaired).is_none());
-        assert!(refract(grazing, Vec3::Y, 0.5, Rules::Original).is_some());
+        assert!(refract_at(grazing, Vec3::Y, 0.5, Rules::Repaired).is_none());
+        assert!(refract_at(grazing, Vec3::Y, 0.5, Rules::Original).is_some());
     }
 }

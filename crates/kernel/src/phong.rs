@@ -3,7 +3,8 @@
 use crate::Rules;
 use crate::light::{DIRECTIONAL, Light, Vpl, emission_cosine, to_light};
 use crate::material::Material;
-use crate::ray::normalize;
+use crate::power::power;
+use crate::ray::normalize_or_zero;
 use glam::Vec3;
 
 /// A light as seen from a point, before its visibility is known.
@@ -20,7 +21,7 @@ pub struct Incidence {
 /// How light arrives at a point with this normal, or `None` where the light or the surface faces away.
 pub fn incidence(light: &Light, point: Vec3, normal: Vec3) -> Option<Incidence> {
     let to_light = to_light(light, point);
-    let unit = normalize(to_light);
+    let unit = normalize_or_zero(to_light);
     let (cos_theta, cos_phi) = (normal.dot(unit), emission_cosine(light, unit));
     (cos_theta > 0.0 && cos_phi > 0.0).then_some(Incidence { to_light, cos_theta, cos_phi })
 }
@@ -38,9 +39,10 @@ pub fn phong(light: &Light, material: &Material, at: &Incidence, normal: Vec3, t
     let gloss = light.specular * material.specular;
     if gloss != Vec3::ZERO {
         // A directional light has no distance to weigh against the eye's; its half vector needs unit vectors.
-        let eye = if light.kind == DIRECTIONAL && rules == Rules::Repaired { normalize(to_eye) } else { to_eye };
-        let half = normalize(at.to_light + eye);
-        color += gloss * normal.dot(half).max(0.0).powf(material.exponent);
+        let eye =
+            if light.kind == DIRECTIONAL && rules == Rules::Repaired { normalize_or_zero(to_eye) } else { to_eye };
+        let half = normalize_or_zero(at.to_light + eye);
+        color += gloss * power(normal.dot(half).max(0.0), material.exponent);
     }
     (color * (light.attenuation * at.cos_phi)).min(Vec3::ONE)
 }
@@ -48,7 +50,7 @@ pub fn phong(light: &Light, material: &Material, at: &Incidence, normal: Vec3, t
 /// How light of a VPL arrives at a point with this normal, or `None` where one of them faces away.
 pub fn vpl_incidence(vpl: &Vpl, point: Vec3, normal: Vec3) -> Option<Incidence> {
     let to_light = vpl.position - point;
-    let unit = normalize(to_light);
+    let unit = normalize_or_zero(to_light);
     let (cos_theta, cos_phi) = (normal.dot(unit), -vpl.direction.dot(unit));
     (cos_theta > 0.0 && cos_phi > 0.0).then_some(Incidence { to_light, cos_theta, cos_phi })
 }

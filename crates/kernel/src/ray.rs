@@ -10,6 +10,9 @@ pub const ORIGINAL_EPSILON: f32 = 0.001;
 /// some hundred times the rounding error of a 32-bit float.
 pub const RELATIVE_EPSILON: f32 = 2e-5;
 
+/// Relative slack of slab tests, above twice their rounding error (Ize 2013, "Robust BVH Ray Traversal").
+pub const SLAB_SLACK: f32 = 1.0 + 4e-7;
+
 /// No hit, or no primitive.
 pub const NONE: u32 = u32::MAX;
 
@@ -87,16 +90,20 @@ pub fn shadow_ray(rules: Rules, point: Vec3, to_light: Vec3, epsilon: f32) -> Ra
 
 /// Component-wise reciprocal of a direction that is safe in slab tests: zeros become huge, never infinite.
 pub fn safe_reciprocal(direction: Vec3) -> Vec3 {
+    Vec3::new(safe_component(direction.x), safe_component(direction.y), safe_component(direction.z))
+}
+
+/// One component of [`safe_reciprocal`].
+pub fn safe_component(c: f32) -> f32 {
     const TINY: f32 = 1e-20;
-    let safe = |c: f32| 1.0 / if c.abs() < TINY { TINY.copysign(c) } else { c };
-    Vec3::new(safe(direction.x), safe(direction.y), safe(direction.z))
+    1.0 / if c.abs() < TINY { TINY.copysign(c) } else { c }
 }
 
 /// `v` times the reciprocal of its length, or zero where it has none.
 ///
 /// The original multiplies by the reciprocal too: dividing instead changes the last bit and, at edges, the number of
 /// hits.
-pub fn normalize(v: Vec3) -> Vec3 {
+pub fn normalize_or_zero(v: Vec3) -> Vec3 {
     v.normalize_or_zero()
 }
 
@@ -122,6 +129,6 @@ mod tests {
 
     #[test]
     fn nothing_is_normalised_to_nan() {
-        assert_eq!(normalize(Vec3::ZERO), Vec3::ZERO);
+        assert_eq!(normalize_or_zero(Vec3::ZERO), Vec3::ZERO);
     }
 }

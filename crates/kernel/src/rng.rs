@@ -34,6 +34,37 @@ pub fn stream(seed: u32, purpose: u32) -> u32 {
     hash4([seed, purpose, 0, 0])[0]
 }
 
+/// Factor of the original's generator.
+pub const ORIGINAL_FACTOR: u32 = 214_013;
+
+/// Summand of the original's generator.
+pub const ORIGINAL_SUMMAND: u32 = 2_531_011;
+
+/// The original generator's next state.
+pub const fn original_next(state: u32) -> u32 {
+    state.wrapping_mul(ORIGINAL_FACTOR).wrapping_add(ORIGINAL_SUMMAND)
+}
+
+/// The value that the original's generator gives in a state, 0 to [`ORIGINAL_MAX`].
+pub const fn original_value(state: u32) -> u32 {
+    (state >> 16) & ORIGINAL_MAX
+}
+
+/// The original generator's state after `count` draws; see [`OriginalGenerator::skip`].
+pub const fn original_skip(state: u32, count: u32) -> u32 {
+    let (mut factor, mut summand) = (ORIGINAL_FACTOR, ORIGINAL_SUMMAND);
+    let (mut result, mut left) = (state, count);
+    while left > 0 {
+        if left & 1 == 1 {
+            result = result.wrapping_mul(factor).wrapping_add(summand);
+        }
+        summand = summand.wrapping_mul(factor.wrapping_add(1));
+        factor = factor.wrapping_mul(factor);
+        left >>= 1;
+    }
+    result
+}
+
 /// The original's 15-bit linear congruential generator (that of its C run-time library).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OriginalGenerator {
@@ -46,10 +77,17 @@ impl OriginalGenerator {
         Self { state: seed }
     }
 
+    /// Skips `count` draws in a number of steps that is the logarithm of it: x -> a x + c applied twice is
+    /// x -> a^2 x + c (a + 1) (Brown 1994, "Random Number Generation with Arbitrary Strides").
+    #[must_use]
+    pub const fn skip(self, count: u32) -> Self {
+        Self { state: original_skip(self.state, count) }
+    }
+
     /// The next value, 0 to [`ORIGINAL_MAX`].
     pub const fn draw(&mut self) -> u32 {
-        self.state = self.state.wrapping_mul(214_013).wrapping_add(2_531_011);
-        (self.state >> 16) & ORIGINAL_MAX
+        self.state = original_next(self.state);
+        original_value(self.state)
     }
 }
 
@@ -63,6 +101,15 @@ mod tests {
         let first: Vec<u32> = (0..5).map(|_| generator.draw()).collect();
         // Well-known first values of that library's rand() after srand(1).
         assert_eq!(first, [41, 18_467, 6_334, 26_500, 19_169]);
+    }
+
+    #[test]
+    fn skipping_is_drawing() {
+        let mut drawn = OriginalGenerator::new(1);
+        for count in 0..200 {
+            assert_eq!(OriginalGenerator::new(1).skip(count), drawn);
+            drawn.draw();
+        }
     }
 
     #[test]

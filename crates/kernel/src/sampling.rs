@@ -5,7 +5,7 @@ use glam::Vec3;
 /// Sine and cosine of `turn` full turns, 0..1, within 4e-6: polynomials, so that devices agree.
 pub fn sin_cos_turns(turn: f32) -> (f32, f32) {
     // Fold to an eighth of a turn on either side of a quarter, where the Taylor series are short.
-    let quarter = (turn * 4.0).round();
+    let quarter = (turn * 4.0 + 0.5).floor();
     let x = (turn - quarter * 0.25) * std::f32::consts::TAU;
     let s = x * x;
     let sin = x * (1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 - s * (1.0 / 5_040.0))));

@@ -1,23 +1,15 @@
 //! From a hit to the surface there.
 
-use crate::intersect::{Sphere, Square};
-use crate::ray::{Hit, Ray, normalize};
-use crate::texture::{SurfacePoint, sphere_coordinates};
+use crate::intersect::{SPHERE, Sphere, Square, TRIANGLE};
+use crate::ray::{Hit, Ray, normalize_or_zero};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-
-/// [`Primitive::kind`] of a triangle.
-pub const TRIANGLE: u32 = 0;
-/// [`Primitive::kind`] of a sphere.
-pub const SPHERE: u32 = 1;
-/// [`Primitive::kind`] of a square.
-pub const SQUARE: u32 = 2;
 
 /// What a primitive number stands for. 16 bytes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 pub struct Primitive {
-    /// [`TRIANGLE`], [`SPHERE`] or [`SQUARE`].
+    /// [`TRIANGLE`], [`SPHERE`] or [`crate::intersect::SQUARE`].
     pub kind: u32,
     /// Index into the slice of its kind in [`Surfaces`].
     pub index: u32,
@@ -73,35 +65,10 @@ pub fn surface_at(surfaces: &Surfaces<'_>, ray: &Ray, hit: &Hit) -> Surface {
     let normal = match primitive.kind {
         TRIANGLE => {
             let [a, b, c] = surfaces.corners[index].normals;
-            normalize(a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v)
+            normalize_or_zero(a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v)
         }
-        SPHERE => normalize(point - surfaces.spheres[index].center),
+        SPHERE => normalize_or_zero(point - surfaces.spheres[index].center),
         _ => surfaces.squares[index].normal,
     };
     Surface { point, normal, material: primitive.material, object: primitive.object }
-}
-
-/// Where the hit lies for texturing.
-pub fn surface_point(surfaces: &Surfaces<'_>, hit: &Hit, surface: &Surface) -> SurfacePoint {
-    let primitive = surfaces.primitives[hit.primitive as usize];
-    let index = primitive.index as usize;
-    match primitive.kind {
-        TRIANGLE => {
-            let [a, b, c] = surfaces.corners[index].texture_coordinates;
-            let blend = |i: usize| a[i] * (1.0 - hit.u - hit.v) + b[i] * hit.u + c[i] * hit.v;
-            SurfacePoint { uv: [blend(0), blend(1)], size: [0.0; 2] }
-        }
-        SPHERE => {
-            let round = surfaces.spheres[index].radius * std::f32::consts::TAU;
-            SurfacePoint { uv: sphere_coordinates(surface.normal), size: [round, round / 2.0] }
-        }
-        _ => {
-            let square = &surfaces.squares[index];
-            let offset = surface.point - square.center;
-            let size = [2.0 * square.half_width, 2.0 * square.half_height];
-            // Seen against the normal with the head upwards, the width runs to the left along `across`.
-            let uv = [0.5 - offset.dot(square.across) / size[0], 0.5 + offset.dot(square.along) / size[1]];
-            SurfacePoint { uv, size }
-        }
-    }
 }

@@ -1,6 +1,9 @@
 //! Textures: where a point lies in an image, and what it adds.
 
 use crate::Rules;
+use crate::intersect::{SPHERE, TRIANGLE};
+use crate::ray::Hit;
+use crate::surface::{Surface, Surfaces};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -10,6 +13,9 @@ pub const STRETCH: u32 = 0;
 pub const REPEAT: u32 = 1;
 /// One texel per scene unit, once; on meshes, nothing outside 0..1.
 pub const STRAIGHT: u32 = 2;
+
+/// Texels beyond this distance are taken as at it: integers hold it, with an image's size added.
+const FARTHEST_TEXEL: f32 = 1e9;
 
 /// An image in the world's texel buffer. 16 bytes.
 #[repr(C)]
@@ -34,15 +40,18 @@ pub struct SurfacePoint {
     pub size: [f32; 2],
 }
 
+/// How many texels a point is from the image's left or upper edge; `size` is that of the surface, or 0.
+pub fn place_on_axis(from_top_left: f32, size: f32, image_size: f32, mode: u32) -> f32 {
+    let in_units = mode != STRETCH && size > 0.0;
+    from_top_left * if in_units { size } else { image_size }
+}
+
 /// The texel at a surface point, linear in the image's bytes: nearest in the original, bilinear else. Black outside a
 /// [`STRAIGHT`] image.
 pub fn sample_texture(texels: &[[u8; 4]], texture: &Texture, mode: u32, at: &SurfacePoint, rules: Rules) -> Vec3 {
     let image_size = [texture.width as f32, texture.height as f32];
     let from_top_left = [at.uv[0], 1.0 - at.uv[1]];
-    let place = |axis: usize| {
-        let in_units = mode != STRETCH && at.size[axis] > 0.0;
-        from_top_left[axis] * if in_units { at.size[axis] } else { image_size[axis] }
-    };
+    let place = |axis: usize| place_on_axis(from_top_left[axis], at.size[axis], image_size[axis], mode);
     let (x, y) = (place(0), place(1));
     let outside = !(x >= 0.0 && y >= 0.0 && x <= image_size[0] && y <= image_size[1]);
     if (mode == STRAIGHT && outside) || !x.is_finite() || !y.is_finite() {
@@ -62,14 +71,17 @@ pub fn sample_texture(texels: &[[u8; 4]], texture: &Texture, mode: u32, at: &Sur
 
 /// One texel; coordinates outside wrap in [`REPEAT`] mode and are clamped in the others.
 fn texel(texels: &[[u8; 4]], texture: &Texture, mode: u32, x: f32, y: f32) -> Vec3 {
-    let index = |c: f32, size: u32| {
-        let size = i64::from(size);
-        let c = c as i64;
-        if mode == REPEAT { c.rem_euclid(size) as u32 } else { c.clamp(0, size - 1) as u32 }
-    };
-    let at = texture.first + index(y, texture.height) * texture.width + index(x, texture.width);
+    let at = texture.first + texel_index(y, texture.height, mode) * texture.width + texel_index(x, texture.width, mode);
     let [r, g, b, _] = texels[at as usize];
     Vec3::new(f32::from(r), f32::from(g), f32::from(b)) / 255.0
+}
+
+/// A row or column of an image of `size` of them.
+pub fn texel_index(place: f32, size: u32, mode: u32) -> u32 {
+    let size = size as i32;
+    let index = place.clamp(-FARTHEST_TEXEL, FARTHEST_TEXEL) as i32;
+    let wrapped = if mode == REPEAT { ((index % size) + size) % size } else { index.clamp(0, size - 1) };
+    wrapped as u32
 }
 
 /// Longitude and latitude of a unit vector as coordinates 0..1: u turns about +y from -z by way of -x, v runs from -y
@@ -79,6 +91,31 @@ pub fn sphere_coordinates(unit: Vec3) -> [f32; 2] {
     let u = 0.5 + arctangent(unit.x, unit.z) / turn;
     let v = arctangent((unit.x * unit.x + unit.z * unit.z).sqrt(), -unit.y) * (2.0 / turn);
     [u, v]
+}
+
+/// Where the hit lies for texturing.
+pub fn surface_point(surfaces: &Surfaces<'_>, hit: &Hit, surface: &Surface) -> SurfacePoint {
+    let primitive = surfaces.primitives[hit.primitive as usize];
+    let index = primitive.index as usize;
+    match primitive.kind {
+        TRIANGLE => {
+            let [a, b, c] = surfaces.corners[index].texture_coordinates;
+            let blend = |i: usize| a[i] * (1.0 - hit.u - hit.v) + b[i] * hit.u + c[i] * hit.v;
+            SurfacePoint { uv: [blend(0), blend(1)], size: [0.0; 2] }
+        }
+        SPHERE => {
+            let round = surfaces.spheres[index].radius * std::f32::consts::TAU;
+            SurfacePoint { uv: sphere_coordinates(surface.normal), size: [round, round / 2.0] }
+        }
+        _ => {
+            let square = &surfaces.squares[index];
+            let offset = surface.point - square.center;
+            let size = [2.0 * square.half_width, 2.0 * square.half_height];
+            // Seen against the normal with the head upwards, the width runs to the left along `across`.
+            let uv = [0.5 - offset.dot(square.across) / size[0], 0.5 + offset.dot(square.along) / size[1]];
+            SurfacePoint { uv, size }
+        }
+    }
 }
 
 /// The angle of (x, y) in radians, -pi..pi, within 1e-5 of `y.atan2(x)`: a polynomial, so that devices agree.

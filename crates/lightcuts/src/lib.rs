@@ -23,14 +23,35 @@
 //! The stations of a picture, one way only: [`load`] makes a [`SceneDesc`] of files, [`World::new`] makes a flat
 //! [`World`] of it, [`render()`] makes a [`Rendering`] of the world and the [`Settings`], and [`image`] makes files of
 //! that. A [`Monitor`] is told how far it is and may stop it.
+//!
+//! [`render_on`] lets each station run on a [`device`]; a [`gpu::Fleet`] opens those that are wanted:
+//!
+//! ```no_run
+//! use lightcuts::gpu::{self, Assignment, DeviceChoice, Fleet, GpuOptions, PerStation};
+//! use lightcuts::{Options, Rendering, Settings, Simd, Unwatched, World};
+//!
+//! fn on_a_gpu(world: &World, settings: &Settings) -> Result<Rendering, Box<dyn std::error::Error>> {
+//!     // A graphics card if there is one, else the CPU; `DeviceChoice::Gpu` fails without any.
+//!     let wanted = PerStation::all(&DeviceChoice::Auto);
+//!     let assignment = Assignment::new(&wanted, &gpu::adapters())?;
+//!     let note = |text: &str| eprintln!("{text}");
+//!     let fleet = Fleet::open(&assignment, world, Simd::Auto, &GpuOptions::default(), &note)?;
+//!     Ok(lightcuts::render_on(world, settings, &Options::default(), &fleet.stations(), &Unwatched)?)
+//! }
+//! ```
 
 pub use lightcuts_import::{ImportError, ImportOptions, Imported, load};
 pub use lightcuts_render::{
-    Monitor, Options, Rendering, Settings, SettingsError, Simd, Stage, Stats, Unwatched, VplCsvError, render,
-    vpls_from_csv, vpls_to_csv,
+    Monitor, Options, Rendering, Settings, SettingsError, Simd, Stage, Stations, Stats, Unwatched, VplCsvError, device,
+    render, render_on, vpls_from_csv, vpls_to_csv,
 };
 pub use lightcuts_scene::SceneDesc;
 pub use lightcuts_world::{World, WorldError};
+
+/// GPUs: adapters, devices, and who runs which station.
+pub mod gpu {
+    pub use lightcuts_gpu::*;
+}
 
 /// Pictures: layers, tone mapping, bloom, EXR and PNG files.
 pub mod image {

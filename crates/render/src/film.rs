@@ -5,16 +5,20 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// A rectangle of pixels; j counts from the bottom, as in the thesis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Tile {
-    pub(crate) i: u32,
-    pub(crate) j: u32,
-    pub(crate) width: u32,
-    pub(crate) height: u32,
+pub struct Tile {
+    /// First column.
+    pub i: u32,
+    /// First row, from the bottom of the picture.
+    pub j: u32,
+    /// Number of columns.
+    pub width: u32,
+    /// Number of rows.
+    pub height: u32,
 }
 
 impl Tile {
     /// Tiles of at most `size` x `size` pixels that cover a picture, bottom row first.
-    pub(crate) fn cover(width: u32, height: u32, size: u32) -> Vec<Self> {
+    pub fn cover(width: u32, height: u32, size: u32) -> Vec<Self> {
         let starts = |length: u32| (0..length).step_by(size as usize);
         starts(height)
             .flat_map(|j| starts(width).map(move |i| (i, j)))
@@ -23,7 +27,7 @@ impl Tile {
     }
 
     /// Its pixels, bottom row first.
-    pub(crate) fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
         let Self { i, j, width, height } = *self;
         (j..j + height).flat_map(move |j| (i..i + width).map(move |i| (i, j)))
     }
@@ -31,7 +35,7 @@ impl Tile {
 
 /// Weighted sums (rgb, weight) of a rectangle of pixels.
 #[derive(Debug, Clone)]
-pub(crate) struct Film {
+pub struct Film {
     /// First column and row; negative in a tile's border.
     left: i64,
     bottom: i64,
@@ -47,8 +51,8 @@ impl Film {
     }
 
     /// An empty film for a tile and the pixels around it that its samples reach.
-    pub(crate) fn around(tile: &Tile, filter: &Filter) -> Self {
-        let border = (filter.resolved_radius() + 0.5).ceil() as usize - 1;
+    pub fn around(tile: &Tile, filter: &Filter) -> Self {
+        let border = filter.border() as usize;
         let offset = border as i64;
         Self::window(
             i64::from(tile.i) - offset,
@@ -58,13 +62,26 @@ impl Film {
         )
     }
 
+    /// The film [`around`](Self::around) a tile from its sums: row by row, the bottom row of the window first, each rgb and
+    /// weight. Panics if their number is another.
+    pub fn from_sums(tile: &Tile, filter: &Filter, sums: Vec<Vec4>) -> Self {
+        let film = Self::around(tile, filter);
+        assert_eq!(sums.len(), film.sums.len(), "a sum for each pixel of the window");
+        Self { sums, ..film }
+    }
+
+    /// Its sums, row by row, the bottom row first: rgb and weight.
+    pub fn sums(&self) -> &[Vec4] {
+        &self.sums
+    }
+
     fn window(left: i64, bottom: i64, width: usize, height: usize) -> Self {
         Self { left, bottom, width, height, sums: vec![Vec4::ZERO; width * height] }
     }
 
     /// Adds a sample that lies `shift` pixels from the centre of pixel (i, j).
     pub(crate) fn add(&mut self, filter: &Filter, i: u32, j: u32, shift: [f32; 2], color: Vec3) {
-        let reach = (filter.resolved_radius() + 0.5).ceil() as i64 - 1;
+        let reach = i64::from(filter.border());
         for y in -reach..=reach {
             for x in -reach..=reach {
                 let weight = filter.weight(shift[0] - x as f32, shift[1] - y as f32);
@@ -78,7 +95,7 @@ impl Film {
     }
 
     /// Adds a tile's film; what lies outside is dropped.
-    pub(crate) fn merge(&mut self, tile: &Self) {
+    pub fn merge(&mut self, tile: &Self) {
         for row in 0..tile.height {
             let j = tile.bottom + row as i64 - self.bottom;
             if !(0..self.height as i64).contains(&j) {

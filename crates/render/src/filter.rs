@@ -1,45 +1,43 @@
-//! Pixel filters: how much a sample counts for a pixel at some distance.
+//! Pixel filters as settings name them.
 
 use crate::settings::{Filter, FilterKind};
+use lightcuts_kernel::filter::{
+    FILTER_BOX, FILTER_GAUSSIAN, FILTER_MITCHELL, FILTER_TRIANGLE, PixelFilter, filter_weight,
+};
 
 impl Filter {
-    /// Weight of a sample `x` pixels to the right of and `y` pixels above a pixel's centre. Separable; zero from the
-    /// radius on, the box excluding its upper end so that a sample on a border belongs to one pixel.
+    /// The filter as devices take it.
+    pub fn pixel_filter(&self) -> PixelFilter {
+        PixelFilter {
+            kind: match self.kind {
+                FilterKind::Box => FILTER_BOX,
+                FilterKind::Triangle => FILTER_TRIANGLE,
+                FilterKind::Gaussian => FILTER_GAUSSIAN,
+                FilterKind::Mitchell => FILTER_MITCHELL,
+            },
+            radius: self.resolved_radius(),
+            alpha: self.alpha,
+            mitchell_b: self.mitchell_b,
+            mitchell_c: self.mitchell_c,
+            padding: [0; 3],
+        }
+    }
+
+    /// Pixels beyond its own that a sample can reach, in each direction.
+    pub fn border(&self) -> u32 {
+        (self.resolved_radius() + 0.5).ceil() as u32 - 1
+    }
+
+    /// Weight of a sample `x` pixels to the right of and `y` pixels above a pixel's centre.
     pub(crate) fn weight(&self, x: f32, y: f32) -> f32 {
-        self.along(x) * self.along(y)
-    }
-
-    fn along(&self, x: f32) -> f32 {
-        let radius = self.resolved_radius();
-        if !(-radius..radius).contains(&x) {
-            return 0.0;
-        }
-        match self.kind {
-            FilterKind::Box => 1.0,
-            FilterKind::Triangle => radius - x.abs(),
-            FilterKind::Gaussian => ((-self.alpha * x * x).exp() - (-self.alpha * radius * radius).exp()).max(0.0),
-            FilterKind::Mitchell => self.mitchell(x.abs() * 2.0 / radius),
-        }
-    }
-
-    /// Mitchell & Netravali 1988, "Reconstruction Filters in Computer Graphics", Eq. 8; x in 0..2.
-    fn mitchell(&self, x: f32) -> f32 {
-        let (b, c) = (self.mitchell_b, self.mitchell_c);
-        let value = if x < 1.0 {
-            (12.0 - 9.0 * b - 6.0 * c) * x.powi(3) + (-18.0 + 12.0 * b + 6.0 * c) * x.powi(2) + (6.0 - 2.0 * b)
-        } else {
-            (-b - 6.0 * c) * x.powi(3)
-                + (6.0 * b + 30.0 * c) * x.powi(2)
-                + (-12.0 * b - 48.0 * c) * x
-                + (8.0 * b + 24.0 * c)
-        };
-        value / 6.0
+        filter_weight(&self.pixel_filter(), x, y)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lightcuts_kernel::filter::mitchell;
 
     fn filter(kind: FilterKind) -> Filter {
         Filter { kind, ..Filter::default() }
@@ -63,9 +61,9 @@ mod tests {
 
     #[test]
     fn mitchell_is_continuous_and_goes_negative() {
-        let f = filter(FilterKind::Mitchell);
-        assert!((f.mitchell(0.999_99) - f.mitchell(1.0)).abs() < 1e-4);
-        assert!(f.mitchell(1.5) < 0.0);
-        assert!((f.mitchell(0.0) - 16.0 / 18.0).abs() < 1e-6);
+        let f = filter(FilterKind::Mitchell).pixel_filter();
+        assert!((mitchell(&f, 0.999_99) - mitchell(&f, 1.0)).abs() < 1e-4);
+        assert!(mitchell(&f, 1.5) < 0.0);
+        assert!((mitchell(&f, 0.0) - 16.0 / 18.0).abs() < 1e-6);
     }
 }

@@ -1,19 +1,21 @@
 //! A render from its first pass to the finished picture: the walk through the stations.
 
-use crate::cpu::{Candidates, Tracer};
+use crate::cpu::CpuDevice;
+use crate::device::{Device, Lighting, Pass, Placement, Shifts, TileResult, View, VplLighting, Wants};
 use crate::film::Tile;
 use crate::light_tree::LightTree;
 use crate::monitor::{Monitor, Stage};
 use crate::occlusion::Occlusion;
 use crate::original::OriginalDraws;
-use crate::pass::{Pass, Placement, Shifts, View, Wants};
-use crate::photon_map::PhotonMap;
+use crate::photon_map::{PhotonMap, photon_targets};
+use crate::ray_tree::TreeHit;
 use crate::rendering::{Canvas, Rendering};
 use crate::sampler::Sampler;
-use crate::settings::{Settings, Strategy};
-use crate::shade::{Lighting, VplLighting};
+use crate::settings::{Bloom, Settings, Strategy};
+use crate::stations::{Crew, Station, Stations};
 use crate::stats::{Stats, timed};
 use crate::{Options, Vpl};
+use lightcuts_image::Image;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::rng::stream;
 use lightcuts_world::World;
@@ -32,6 +34,7 @@ pub(crate) struct Job<'a> {
     view: View<'a>,
     given_vpls: Option<&'a [Vpl]>,
     monitor: &'a dyn Monitor,
+    crew: Crew<'a>,
     canvas: Canvas,
     stats: Stats,
     /// The original's random numbers, where they are to be reproduced.
@@ -44,6 +47,7 @@ impl<'a> Job<'a> {
         world: &'a World,
         settings: &'a Settings,
         options: &'a Options,
+        stations: &Stations<'a>,
         monitor: &'a dyn Monitor,
     ) -> Self {
         let rules = if settings.run.reproduce { Rules::Original } else { Rules::Repaired };
@@ -51,7 +55,7 @@ impl<'a> Job<'a> {
         let view = View {
             world,
             camera: world.camera(size.width, size.height),
-            tracer: Tracer::new(world.geometry(), rules, options.simd),
+            rules,
             filter: &settings.filter,
             max_depth: settings.run.max_depth,
         };
@@ -60,6 +64,7 @@ impl<'a> Job<'a> {
             view,
             given_vpls: options.vpls.as_deref(),
             monitor,
+            crew: Crew::new(stations, CpuDevice::new(world, options.simd)),
             canvas: Canvas::new(size.width, size.height),
             stats: Stats::default(),
             draws: settings.run.reproduce.then(OriginalDraws::new),
@@ -77,26 +82,25 @@ impl<'a> Job<'a> {
         self.stats.vpl_count = vpls.len() as u64;
         let photons = self.shoot_photons();
         if self.settings.vpl.enabled && !self.cancelled && (!vpls.is_empty() || photons.is_some()) {
-            let tree = self.timed(Stage::LightTree, |job| {
-                job.skip_tree_draws(vpls.len());
-                LightTree::build(&vpls)
-            });
+            let tree = self.timed(Stage::LightTree, |job| job.build_tree(&vpls));
             self.timed(Stage::SecondPass, |job| job.second_pass(&tree, photons.as_ref()));
         }
         self.finish(vpls)
     }
 
     fn finish(self, vpls: Vec<Vpl>) -> Rendering {
-        let Self { settings, canvas, mut stats, cancelled, monitor, .. } = self;
+        let Self { settings, canvas, mut crew, mut stats, cancelled, monitor, .. } = self;
         monitor.begin(Stage::Develop, 1);
+        let bloom = |sum| bloom(&mut crew, &settings.bloom, sum, monitor);
         let mut passes = std::mem::take(&mut stats.passes);
-        let mut rendering = timed(&mut passes, Stage::Develop, || canvas.develop(&settings.bloom, vpls, stats));
+        let mut rendering = timed(&mut passes, Stage::Develop, || canvas.develop(bloom, vpls, stats));
         monitor.end();
         let stats = &mut rendering.stats;
         stats.total_wall_s = passes.iter().map(|p| p.wall_s).sum();
         stats.total_cpu_s = passes.iter().map(|p| p.cpu_s).sum();
         stats.passes = passes;
         stats.complete = !cancelled;
+        (stats.devices, stats.device_faults) = (crew.record(), crew.faults);
         let tree = &mut stats.tree;
         tree.visits_per_hit = (tree.nodes + tree.lights) as f64 / tree.shaded_hits.max(1) as f64;
         rendering
@@ -131,13 +135,36 @@ impl<'a> Job<'a> {
         vpls
     }
 
-    /// The first pass with the original's draws: rows one after the other, because each row's shifts depend on the
-    /// number of hits before it.
-    fn first_pass_original(&mut self, mut draws: OriginalDraws) -> Vec<Vpl> {
-        let settings = self.settings;
-        let placement = Placement::new(&settings.vpl, u64::from(self.view.camera.width * self.view.camera.height), 0);
+    /// The first pass with the original's draws.
+    fn first_pass_original(&mut self, draws: OriginalDraws) -> Vec<Vpl> {
+        let view = self.view;
         let occlusion = self.occlusion();
+        let lighting = Lighting::Scene { occlusion: occlusion.as_ref() };
+        match self.crew.run(Station::Place, self.monitor, |device, _| device.original_shifts(&view)) {
+            Some(shifts) => self.first_pass_at(lighting, &shifts, draws),
+            None => self.first_pass_by_rows(lighting, draws),
+        }
+    }
+
+    /// The original's first pass with shifts that a device has found beforehand; the draws decide about hits only.
+    fn first_pass_at(&mut self, lighting: Lighting<'_>, shifts: &[[f32; 2]], mut draws: OriginalDraws) -> Vec<Vpl> {
+        let width = self.view.camera.width;
+        let placement = self.original_placement();
+        let mut vpls = Vec::new();
+        let pass = self.pass(lighting, Shifts::Given(shifts), Wants::SurfacesAndHits);
+        self.run_pass(Stage::FirstPass, &pass, |canvas, result| {
+            canvas.first.merge(&result.film);
+            draws.row(width);
+            placement(&mut draws, &result.hits, &mut vpls);
+        });
+        self.draws = Some(draws);
+        vpls
+    }
+
+    /// The original's first pass row by row, because each row's shifts depend on the number of hits before it.
+    fn first_pass_by_rows(&mut self, lighting: Lighting<'_>, mut draws: OriginalDraws) -> Vec<Vpl> {
         let (width, height) = (self.view.camera.width, self.view.camera.height);
+        let placement = self.original_placement();
         let mut shifts = vec![[0.0; 2]; (width * height) as usize];
         let mut vpls = Vec::new();
         self.monitor.begin(Stage::FirstPass, u64::from(height * width.div_ceil(TILE_SIZE)));
@@ -148,12 +175,10 @@ impl<'a> Job<'a> {
                 .step_by(TILE_SIZE as usize)
                 .map(|i| Tile { i, j, width: TILE_SIZE.min(width - i), height: 1 })
                 .collect();
-            let lighting = Lighting::Scene { occlusion: occlusion.as_ref() };
             let pass = self.pass(lighting, Shifts::Given(&shifts), Wants::SurfacesAndHits);
-            let complete = self.merge_tiles(&pass, &tiles, |canvas, result| {
+            let complete = self.merge_tiles(Station::Place, &pass, &tiles, |canvas, result| {
                 canvas.first.merge(&result.film);
-                let accepted = result.hits.iter().filter(|_| draws.accepts(settings.vpl.probability));
-                vpls.extend(accepted.filter_map(|hit| placement.vpl(hit)));
+                placement(&mut draws, &result.hits, &mut vpls);
             });
             if !complete {
                 break;
@@ -162,6 +187,23 @@ impl<'a> Job<'a> {
         self.monitor.end();
         self.draws = Some(draws);
         vpls
+    }
+
+    /// Makes VPLs of hits: each takes one of the original's draws.
+    fn original_placement(&self) -> impl Fn(&mut OriginalDraws, &[TreeHit], &mut Vec<Vpl>) + use<> {
+        let (camera, probability) = (&self.view.camera, self.settings.vpl.probability);
+        let placement = Placement::new(&self.settings.vpl, u64::from(camera.width * camera.height), 0);
+        move |draws, hits, vpls| {
+            let accepted = hits.iter().filter(|_| draws.accepts(probability));
+            vpls.extend(accepted.filter_map(|hit| placement.vpl(hit)));
+        }
+    }
+
+    /// Station 4, in the layout that the second pass wants.
+    fn build_tree(&mut self, vpls: &[Vpl]) -> LightTree {
+        self.skip_tree_draws(vpls.len());
+        let wanted = self.crew.at(Station::Gather).preferred_layout();
+        self.crew.run(Station::Tree, self.monitor, |device, _| device.build_tree(vpls, wanted))
     }
 
     /// The draws that the original spends on its light tree.
@@ -174,17 +216,21 @@ impl<'a> Job<'a> {
     }
 
     fn shoot_photons(&mut self) -> Option<PhotonMap> {
-        let settings = self.settings;
+        let (settings, view) = (self.settings, self.view);
+        let caustics = &settings.caustics;
         // Without a second pass nothing would gather them.
-        if !settings.caustics.enabled || !settings.vpl.enabled || self.cancelled {
+        if !caustics.enabled || !settings.vpl.enabled || self.cancelled {
             return None;
         }
         self.timed(Stage::Photons, |job| {
-            let (view, rays, monitor) = (&job.view, &mut job.stats.rays, job.monitor);
-            let depth = settings.run.max_depth;
-            let map = PhotonMap::shoot(view.world, &view.tracer, &settings.caustics, depth, rays, monitor);
-            job.stats.photons_stored = map.len() as u64;
-            job.cancelled |= monitor.cancelled();
+            let rows = photon_targets(view.world, caustics).iter().map(|target| u64::from(target.side)).sum();
+            job.monitor.begin(Stage::Photons, rows);
+            let shoot = |device: &dyn Device, monitor: &dyn Monitor| device.shoot_photons(&view, caustics, monitor);
+            let (map, rays) = job.crew.run(Station::Photons, job.monitor, shoot);
+            job.monitor.end();
+            job.stats.rays.photon += rays;
+            job.stats.photons_stored = map.photons.len() as u64;
+            job.cancelled |= job.monitor.cancelled();
             Some(map)
         })
     }
@@ -192,18 +238,16 @@ impl<'a> Job<'a> {
     /// Station 5: light of the VPLs.
     fn second_pass(&mut self, tree: &LightTree, photons: Option<&PhotonMap>) {
         let settings = self.settings;
-        let all: Vec<Candidates> = tree.every_block(true).collect();
         let lighting = Lighting::Vpls(VplLighting {
             tree,
             strategy: settings.gather.strategy,
-            all: &all,
             threshold: settings.gather.threshold,
             photons,
         });
         let mut ratio = LightRatio::new(tree.vpl_count(), self.draws.is_some());
-        let mut merge = |canvas: &mut Canvas, result: crate::pass::TileResult| {
+        let mut merge = |canvas: &mut Canvas, result: TileResult| {
             canvas.second.merge(&result.film);
-            ratio.add(&result.selections);
+            ratio.add(&result);
         };
         if let Some(draws) = &mut self.draws {
             let (width, height) = (self.view.camera.width, self.view.camera.height);
@@ -212,7 +256,7 @@ impl<'a> Job<'a> {
             self.run_pass(Stage::SecondPass, &pass, merge);
         } else {
             let sampler = self.sampler(0, settings.sampling.samples);
-            let pass = self.pass(lighting, Shifts::Sampler(&sampler), Wants::Selections);
+            let pass = self.pass(lighting, Shifts::Sampler(&sampler), Wants::SelectedSums);
             self.run_pass(Stage::SecondPass, &pass, &mut merge);
             self.refine(Stage::SecondPass, lighting);
         }
@@ -255,10 +299,11 @@ impl<'a> Job<'a> {
     }
 
     /// Runs a pass over the whole picture as a stage of its own.
-    fn run_pass(&mut self, stage: Stage, pass: &Pass<'_>, merge: impl FnMut(&mut Canvas, crate::pass::TileResult)) {
+    fn run_pass(&mut self, stage: Stage, pass: &Pass<'_>, merge: impl FnMut(&mut Canvas, TileResult)) {
         let tiles = self.tiles();
+        let station = if stage == Stage::FirstPass { Station::Place } else { Station::Gather };
         self.monitor.begin(stage, tiles.len() as u64);
-        self.merge_tiles(pass, &tiles, merge);
+        self.merge_tiles(station, pass, &tiles, merge);
         self.monitor.end();
     }
 
@@ -274,12 +319,13 @@ impl<'a> Job<'a> {
 
     fn merge_tiles(
         &mut self,
+        station: Station,
         pass: &Pass<'_>,
         tiles: &[Tile],
-        mut merge: impl FnMut(&mut Canvas, crate::pass::TileResult),
+        mut merge: impl FnMut(&mut Canvas, TileResult),
     ) -> bool {
         let (canvas, stats) = (&mut self.canvas, &mut self.stats);
-        let complete = pass.run(tiles, self.monitor, |result| {
+        let complete = self.crew.render_tiles(station, pass, tiles, self.monitor, |result| {
             canvas.see(&result);
             stats.rays.add(&result.rays);
             stats.tree.add(&result.visits);
@@ -288,6 +334,12 @@ impl<'a> Job<'a> {
         self.cancelled |= !complete;
         complete
     }
+}
+
+/// What devices do at station 6: bloom over both passes together, if it is wanted.
+fn bloom(crew: &mut Crew<'_>, bloom: &Bloom, sum: Image, monitor: &dyn Monitor) -> Image {
+    let Bloom { enabled, radius, weight } = *bloom;
+    if enabled { crew.run(Station::Develop, monitor, |device, _| device.bloom(&sum, radius, weight)) } else { sum }
 }
 
 /// The mean share of the VPLs that lit a shaded hit.
@@ -304,14 +356,17 @@ impl LightRatio {
         Self { vpls, original_sum: original.then_some(0.0), selected: 0, hits: 0 }
     }
 
-    fn add(&mut self, selections: &[u32]) {
-        if let Some(sum) = &mut self.original_sum {
-            for &selected in selections {
-                *sum += selected as f32 / self.vpls as f32;
-            }
+    fn add(&mut self, result: &TileResult) {
+        let Some(sum) = &mut self.original_sum else {
+            self.selected += result.seen.iter().map(|seen| seen.selected).sum::<u64>();
+            self.hits += result.seen.iter().map(|seen| seen.shaded).sum::<u64>();
+            return;
+        };
+        for &selected in &result.selections {
+            *sum += selected as f32 / self.vpls as f32;
+            self.selected += u64::from(selected);
         }
-        self.selected += selections.iter().map(|&n| u64::from(n)).sum::<u64>();
-        self.hits += selections.len() as u64;
+        self.hits += result.selections.len() as u64;
     }
 
     fn percent(&self) -> f64 {
@@ -327,7 +382,8 @@ impl LightRatio {
 mod tests {
     use super::*;
     use crate::Unwatched;
-    use crate::cpu::{select, select_exhaustively};
+    use crate::cpu::{Simd, select, select_exhaustively};
+    use crate::light_tree::TreeLayout;
     use crate::light_tree::tests::chosen;
     use lightcuts_import::{ImportOptions, load};
     use lightcuts_testkit::{project_root, shared};
@@ -343,22 +399,22 @@ mod tests {
             let world = World::new(&scene).expect("the scene is sound");
             let mut settings = Settings::for_scene(&scene);
             settings.run.reproduce = true;
-            let options = Options::default();
-            let mut job = Job::new(&world, &settings, &options, &Unwatched);
+            let (options, device) = (Options::default(), CpuDevice::new(&world, Simd::Auto));
+            let mut job = Job::new(&world, &settings, &options, &Stations::all(&device), &Unwatched);
             let vpls = job.first_pass_original(OriginalDraws::new());
-            let tree = LightTree::build(&vpls);
+            let tree = LightTree::build(&vpls, TreeLayout::Wide);
             let mut draws = job.draws.expect("the job reproduces");
             draws.skip_light_tree(vpls.len());
             let shifts: Vec<[f32; 2]> = (0..512).flat_map(|_| draws.row(512)).collect();
             let pass = job.pass(Lighting::Scene { occlusion: None }, Shifts::Given(&shifts), Wants::SurfacesAndHits);
             let mut hits = Vec::new();
-            pass.run(&job.tiles(), &Unwatched, |result| hits.extend(result.hits));
+            job.merge_tiles(Station::Place, &pass, &job.tiles(), |_, result| hits.extend(result.hits));
             let (mut found, mut expected) = (Vec::new(), Vec::new());
             for hit in &hits {
                 found.clear();
                 expected.clear();
                 let (point, threshold) = (hit.surface.point, settings.gather.threshold);
-                select(&tree, pass.view.tracer.avx2, point, threshold, &mut found);
+                select(&tree, Simd::Auto.has_avx2(), point, threshold, &mut found);
                 select_exhaustively(&tree, &mut expected);
                 let sets = [&found, &expected].map(|candidates| chosen(&tree, candidates, point, threshold));
                 assert_eq!(sets[0], sets[1], "{name} at {point}");

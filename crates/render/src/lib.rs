@@ -4,13 +4,16 @@
 //! for bit on any number of threads, with or without SIMD.
 
 mod cpu;
+pub mod device;
 mod film;
 mod filter;
 mod job;
+mod light_node;
 mod light_tree;
 mod monitor;
 mod occlusion;
 mod original;
+mod packed_tree;
 mod pass;
 mod photon_map;
 mod ray_tree;
@@ -18,6 +21,7 @@ mod rendering;
 mod sampler;
 mod settings;
 mod shade;
+mod stations;
 mod stats;
 mod vpl_csv;
 
@@ -29,9 +33,11 @@ pub use settings::{
     AmbientOcclusion, Bloom, Caustics, Display, Filter, FilterKind, Gather, ImageSize, Model, Run, Sampling, Settings,
     SettingsError, Strategy, TomlFault, ToneMappingKind, VplPlacement, overlay, value_at,
 };
-pub use stats::{PassTime, Rays, Stats, TreeVisits};
+pub use stations::Stations;
+pub use stats::{PassTime, Rays, StationDevice, Stats, TreeVisits};
 pub use vpl_csv::{VplCsvError, vpls_from_csv, vpls_to_csv};
 
+use cpu::CpuDevice;
 use lightcuts_world::World;
 
 /// What a render is given besides its settings; none of it changes what the settings mean.
@@ -51,6 +57,19 @@ pub fn render(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Rendering, SettingsError> {
+    let cpu = CpuDevice::new(world, options.simd);
+    render_on(world, settings, options, &Stations::all(&cpu), monitor)
+}
+
+/// [`render`] with each station on a device. What a device does not return is rendered by the CPU, so that the picture is
+/// whole; the monitor is told of it.
+pub fn render_on(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    stations: &Stations<'_>,
+    monitor: &dyn Monitor,
+) -> Result<Rendering, SettingsError> {
     settings.validate()?;
-    Ok(job::Job::new(world, settings, options, monitor).run())
+    Ok(job::Job::new(world, settings, options, stations, monitor).run())
 }

@@ -9,20 +9,26 @@ use lightcuts_kernel::rng::random4;
 use lightcuts_kernel::sampling::sample_cosine_cone;
 
 /// Largest number of slots of a ray tree that random numbers tell apart.
-const SLOTS: u32 = 1 << 12;
+pub const SLOTS: u32 = 1 << 12;
 
 /// Parameters made ready for use.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Occlusion {
-    rays: u32,
-    sin_max: f32,
-    range: f32,
-    factor: f32,
-    stream: u32,
+pub struct Occlusion {
+    /// Rays per hit.
+    pub rays: u32,
+    /// Sine of the half angle of the cone that they fill.
+    pub sin_max: f32,
+    /// Length of the rays in scene units.
+    pub range: f32,
+    /// Factor on the share that is open.
+    pub factor: f32,
+    /// Stream of their random numbers.
+    pub stream: u32,
 }
 
 impl Occlusion {
-    pub(crate) fn new(settings: &AmbientOcclusion, stream: u32) -> Self {
+    /// Makes settings ready; `stream` is that of the random numbers.
+    pub fn new(settings: &AmbientOcclusion, stream: u32) -> Self {
         Self {
             rays: settings.rays(),
             sin_max: settings.angle.to_radians().sin(),

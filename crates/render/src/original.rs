@@ -28,8 +28,7 @@ impl OriginalDraws {
     }
 
     fn shift(&mut self) -> f32 {
-        let tenths = self.generator.draw() as i32 % 10 - 5;
-        tenths as f32 / 10.0 * SHIFT_SCALE * HALF_WIDTH
+        original_shift(self.generator.draw())
     }
 
     /// One draw: whether a hit may become a VPL.
@@ -47,6 +46,12 @@ impl OriginalDraws {
             }
         }
     }
+}
+
+/// The shift of a sample along one axis, in pixels, that a draw gives: one of ten.
+pub fn original_shift(draw: u32) -> f32 {
+    let tenths = draw as i32 % 10 - 5;
+    tenths as f32 / 10.0 * SHIFT_SCALE * HALF_WIDTH
 }
 
 /// Greatest draw that makes a hit a VPL: floor(p 10^6), from the original's `draw % 1000000 / 1000000 < p`.

@@ -1,83 +1,21 @@
-//! One pass over the picture: camera rays of every pixel, tile by tile, in parallel.
+//! One tile of a pass over the picture on the CPU: camera rays of every pixel.
 
 use crate::cpu::Tracer;
+use crate::device::{Pass, Placement, Seen, Shifts, TileResult, Wants};
 use crate::film::{Film, Tile};
-use crate::monitor::Monitor;
 use crate::original::effective_probability;
 use crate::ray_tree::{RayTree, TreeHit};
-use crate::sampler::Sampler;
-use crate::settings::{Filter, VplPlacement};
-use crate::shade::{Lighting, Shader};
+use crate::settings::VplPlacement;
+use crate::shade::Shader;
 use crate::stats::{Rays, TreeVisits};
-use glam::Vec3;
-use lightcuts_kernel::camera::{Camera, THESIS_SIZE, camera_ray};
+use lightcuts_kernel::camera::{THESIS_SIZE, camera_ray};
 use lightcuts_kernel::light::Vpl;
 use lightcuts_kernel::rng::random4;
-use lightcuts_world::World;
-use rayon::prelude::*;
-
-/// Tiles that are rendered between two looks at the monitor.
-const BATCH: usize = 64;
-
-/// What every pass over the picture shares.
-#[derive(Clone, Copy)]
-pub(crate) struct View<'a> {
-    pub(crate) world: &'a World,
-    pub(crate) camera: Camera,
-    pub(crate) tracer: Tracer<'a>,
-    pub(crate) filter: &'a Filter,
-    pub(crate) max_depth: u32,
-}
-
-/// Where a pass takes its samples from.
-#[derive(Clone, Copy)]
-pub(crate) enum Shifts<'a> {
-    /// A sampler's points.
-    Sampler(&'a Sampler),
-    /// One given shift per pixel of the whole picture, bottom row first.
-    Given(&'a [[f32; 2]]),
-}
-
-/// What a pass does at each pixel.
-#[derive(Clone, Copy)]
-pub(crate) struct Pass<'a> {
-    pub(crate) view: View<'a>,
-    pub(crate) lighting: Lighting<'a>,
-    pub(crate) shifts: Shifts<'a>,
-    /// Number of a pixel's first sample in this pass.
-    pub(crate) first_sample: u32,
-    /// Pixels to render; all where absent.
-    pub(crate) mask: Option<&'a [bool]>,
-    /// What is wanted besides colours.
-    pub(crate) wants: Wants<'a>,
-}
-
-/// What a pass reports besides colours.
-#[derive(Clone, Copy)]
-pub(crate) enum Wants<'a> {
-    /// Nothing.
-    Colors,
-    /// Surfaces seen, and VPLs placed.
-    SurfacesAndVpls(Option<&'a Placement>),
-    /// Surfaces seen, and every hit in the original's order.
-    SurfacesAndHits,
-    /// Numbers of VPLs that lit each shaded hit, in order.
-    Selections,
-}
-
-/// Chooses hits that become VPLs.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Placement {
-    probability: f32,
-    min_illumination: f32,
-    attenuation: f32,
-    stream: u32,
-}
 
 impl Placement {
     /// `samples` camera rays are to place as many VPLs, on average, as the thesis' picture of one per pixel: VPLs are not
     /// weighted, so their number decides how bright the second pass is.
-    pub(crate) fn new(settings: &VplPlacement, samples: u64, stream: u32) -> Self {
+    pub fn new(settings: &VplPlacement, samples: u64, stream: u32) -> Self {
         let thesis_samples = u64::from(THESIS_SIZE) * u64::from(THESIS_SIZE);
         Self {
             probability: effective_probability(settings.probability) * (thesis_samples as f32 / samples as f32),
@@ -88,7 +26,7 @@ impl Placement {
     }
 
     /// The VPL of a hit, if its light is enough.
-    pub(crate) fn vpl(&self, hit: &TreeHit) -> Option<Vpl> {
+    pub fn vpl(&self, hit: &TreeHit) -> Option<Vpl> {
         let color = hit.color;
         (color.x + color.y + color.z >= self.min_illumination).then(|| Vpl {
             position: hit.surface.point + hit.surface.normal * hit.epsilon,
@@ -104,55 +42,12 @@ impl Placement {
     }
 }
 
-/// What the camera rays of a pixel saw, summed over its samples.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Seen {
-    pub(crate) samples: u32,
-    pub(crate) hits: u32,
-    pub(crate) albedo: Vec3,
-    pub(crate) normal: Vec3,
-    pub(crate) depth: f32,
-    /// Object of the first sample that hit one.
-    pub(crate) object: u32,
-    /// VPLs that lit shaded hits, and the number of those.
-    pub(crate) selected: u64,
-    pub(crate) shaded: u64,
-}
-
-/// Everything a tile yields.
-pub(crate) struct TileResult {
-    pub(crate) tile: Tile,
-    pub(crate) film: Film,
-    pub(crate) seen: Vec<Seen>,
-    pub(crate) vpls: Vec<Vpl>,
-    pub(crate) hits: Vec<TreeHit>,
-    pub(crate) selections: Vec<u32>,
-    pub(crate) rays: Rays,
-    pub(crate) visits: TreeVisits,
-}
-
 impl Pass<'_> {
-    /// Renders tiles in parallel and hands the results over in order. Returns whether all were rendered.
-    pub(crate) fn run(&self, tiles: &[Tile], monitor: &dyn Monitor, mut merge: impl FnMut(TileResult)) -> bool {
-        for batch in tiles.chunks(BATCH) {
-            let results: Vec<Option<TileResult>> = batch
-                .par_iter()
-                .map(|tile| (!monitor.cancelled()).then(|| self.render_tile(tile)))
-                .inspect(|_| monitor.advance())
-                .collect();
-            let complete = results.iter().all(Option::is_some);
-            results.into_iter().flatten().for_each(&mut merge);
-            if !complete {
-                return false;
-            }
-        }
-        true
-    }
-
-    fn render_tile(&self, tile: &Tile) -> TileResult {
+    /// Renders one tile.
+    pub(crate) fn render_tile(&self, tracer: Tracer<'_>, tile: &Tile) -> TileResult {
         let mut worker = Worker {
             pass: self,
-            shader: Shader::new(self.view.world, self.view.tracer, self.lighting),
+            shader: Shader::new(self.view.world, tracer, self.lighting),
             tree: RayTree::new(self.view.max_depth),
             shifts: Vec::new(),
             tree_hits: Vec::new(),
@@ -204,7 +99,7 @@ impl Worker<'_> {
             let shift = self.shifts[k];
             self.shader.place = (pixel, self.pass.first_sample + k as u32);
             self.shader.selected.clear();
-            let ray = camera_ray(&view.camera, i, j, shift, view.tracer.rules);
+            let ray = camera_ray(&view.camera, i, j, shift, view.rules);
             let color = self.tree.trace(&mut self.shader, ray);
             self.result.film.add(view.filter, i, j, shift, color);
             self.report(&mut seen);
@@ -216,9 +111,9 @@ impl Worker<'_> {
     fn report(&mut self, seen: &mut Seen) {
         match self.pass.wants {
             Wants::Colors => {}
+            Wants::SelectedSums => self.sum_selected(seen),
             Wants::Selections => {
-                seen.selected += self.shader.selected.iter().map(|&n| u64::from(n)).sum::<u64>();
-                seen.shaded += self.shader.selected.len() as u64;
+                self.sum_selected(seen);
                 self.result.selections.extend(&self.shader.selected);
             }
             Wants::SurfacesAndHits => {
@@ -236,6 +131,11 @@ impl Worker<'_> {
                 }
             }
         }
+    }
+
+    fn sum_selected(&self, seen: &mut Seen) {
+        seen.selected += self.shader.selected.iter().map(|&n| u64::from(n)).sum::<u64>();
+        seen.shaded += self.shader.selected.len() as u64;
     }
 
     fn see(&self, seen: &mut Seen) {

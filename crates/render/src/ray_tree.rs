@@ -3,7 +3,7 @@
 
 use crate::shade::{Found, Shader};
 use glam::Vec3;
-use lightcuts_kernel::optics::{reflect, refract};
+use lightcuts_kernel::optics::{reflect_at, refract_at};
 use lightcuts_kernel::ray::Ray;
 use lightcuts_kernel::surface::Surface;
 
@@ -21,13 +21,15 @@ struct Slot {
 
 /// A hit of a ray tree: a place where a VPL may be put.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TreeHit {
-    pub(crate) slot: u32,
-    pub(crate) surface: Surface,
+pub struct TreeHit {
+    /// Slot of the ray in its tree.
+    pub slot: u32,
+    /// What it hit.
+    pub surface: Surface,
     /// The ray's final colour.
-    pub(crate) color: Vec3,
+    pub color: Vec3,
     /// Distance that separates rays and VPLs from this surface.
-    pub(crate) epsilon: f32,
+    pub epsilon: f32,
 }
 
 /// The array, reused from ray to ray.
@@ -87,12 +89,12 @@ impl RayTree {
             inside,
         };
         if reflection > 0.0 {
-            let mirrored = child(reflect(ray.direction, surface.normal), ray.inside);
+            let mirrored = child(reflect_at(ray.direction, surface.normal), ray.inside);
             self.slots[2 * k as usize + 1] = Some(self.visit(shader, 2 * k + 1, mirrored));
             self.active.push(2 * k + 1);
         }
         let bent = (refraction > 0.0)
-            .then(|| refract(ray.direction, surface.normal, material.refraction_ratio, shader.rules()))
+            .then(|| refract_at(ray.direction, surface.normal, material.refraction_ratio, shader.rules()))
             .flatten();
         if let Some(direction) = bent {
             let refracted = child(direction, !ray.inside);

@@ -1,11 +1,12 @@
 //! Station 6: what a render yields.
 
+use crate::device::Device;
+use crate::device::{Seen, TileResult};
 use crate::film::Film;
-use crate::pass::{Seen, TileResult};
-use crate::settings::{Bloom, Display};
+use crate::settings::Display;
 use crate::stats::Stats;
 use glam::Vec3;
-use lightcuts_image::{Image, LayerData, Layers, Plane, bloom};
+use lightcuts_image::{Image, LayerData, Layers, Plane};
 use lightcuts_kernel::light::Vpl;
 
 /// A finished picture with everything that was learnt on the way. All planes have one size, row 0 at the top.
@@ -56,6 +57,11 @@ impl Rendering {
     /// The picture as it is shown: tone mapped, before the transfer curve.
     pub fn displayed(&self, display: &Display) -> Image {
         display.operator().apply(&self.beauty)
+    }
+
+    /// The same by a device; by this one where that faults.
+    pub fn displayed_on(&self, display: &Display, device: &dyn Device) -> Image {
+        device.tone_map(&self.beauty, &display.operator()).unwrap_or_else(|_| self.displayed(display))
     }
 }
 
@@ -113,15 +119,14 @@ impl Canvas {
         mask
     }
 
-    /// Turns sums into pictures.
-    pub(crate) fn develop(self, glow: &Bloom, vpls: Vec<Vpl>, stats: Stats) -> Rendering {
+    /// Turns sums into pictures; `bloom` finishes that of both passes.
+    pub(crate) fn develop(self, bloom: impl FnOnce(Image) -> Image, vpls: Vec<Vpl>, stats: Stats) -> Rendering {
         let first_pass = self.image(|i, j| self.first.color(i, j));
         let second_pass = self.image(|i, j| self.second.color(i, j));
         let sum = self.image(|i, j| (self.first.color(i, j) + self.second.color(i, j)).min(Vec3::ONE));
-        let beauty = if glow.enabled { bloom(&sum, glow.radius, glow.weight) } else { sum };
         let mean = |sum: Vec3, count: u32| if count == 0 { Vec3::ZERO } else { sum / count as f32 };
         Rendering {
-            beauty,
+            beauty: bloom(sum),
             first_pass,
             second_pass,
             albedo: self.image(|i, j| mean(self.at(i, j).albedo, self.at(i, j).samples)),

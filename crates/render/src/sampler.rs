@@ -11,7 +11,7 @@ const CANDIDATES_PER_POINT: usize = 4;
 
 /// Points of one batch of samples: all pixels first get the base batch, some later the adaptive one.
 #[derive(Debug, Clone)]
-pub(crate) struct Sampler {
+pub struct Sampler {
     kind: SamplerKind,
     stream: u32,
     /// Index of the batch's first sample; tells batches apart.
@@ -23,14 +23,19 @@ pub(crate) struct Sampler {
 
 impl Sampler {
     /// A sampler for `count` samples of every pixel, numbered from `first`.
-    pub(crate) fn new(kind: SamplerKind, stream: u32, first: u32, count: u32) -> Self {
+    pub fn new(kind: SamplerKind, stream: u32, first: u32, count: u32) -> Self {
         let patterns =
             if kind == SamplerKind::BestCandidate { best_candidates(stream, first, count) } else { Vec::new() };
         Self { kind, stream, first, count, patterns }
     }
 
+    /// Number of samples of every pixel.
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
     /// Fills `shifts` with the samples of a pixel, as shifts from its centre in pixels, -0.5..0.5.
-    pub(crate) fn fill(&self, pixel: u32, shifts: &mut Vec<[f32; 2]>) {
+    pub fn fill(&self, pixel: u32, shifts: &mut Vec<[f32; 2]>) {
         shifts.clear();
         match self.kind {
             SamplerKind::Stratified => self.fill_stratified(pixel, shifts),

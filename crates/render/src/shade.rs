@@ -1,9 +1,7 @@
 //! Light at a hit: the scene's lights in the first pass, VPLs in the second.
 
 use crate::cpu::{Candidates, PacketStack, Receiver, Tracer, evaluate, select, select_exhaustively};
-use crate::light_tree::LightTree;
-use crate::occlusion::Occlusion;
-use crate::photon_map::PhotonMap;
+use crate::device::{Lighting, VplLighting};
 use crate::settings::Strategy;
 use crate::stats::{Rays, TreeVisits};
 use glam::Vec3;
@@ -12,30 +10,9 @@ use lightcuts_kernel::light::DIRECTIONAL;
 use lightcuts_kernel::material::Material;
 use lightcuts_kernel::phong::{incidence, phong};
 use lightcuts_kernel::ray::{Hit, NONE, Ray, shadow_ray, spawn_epsilon};
-use lightcuts_kernel::surface::{Surface, surface_at, surface_point};
-use lightcuts_kernel::texture::sample_texture;
+use lightcuts_kernel::surface::{Surface, surface_at};
+use lightcuts_kernel::texture::{sample_texture, surface_point};
 use lightcuts_world::World;
-
-/// What lights a hit.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Lighting<'a> {
-    /// First pass: the scene's lights, with textures, background and glow.
-    Scene { occlusion: Option<&'a Occlusion> },
-    /// Second pass: VPLs and photons.
-    Vpls(VplLighting<'a>),
-}
-
-/// What the second pass gathers.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct VplLighting<'a> {
-    pub(crate) tree: &'a LightTree,
-    pub(crate) strategy: Strategy,
-    /// Every VPL, for [`Strategy::All`].
-    pub(crate) all: &'a [Candidates],
-    /// Least relevance of a chosen VPL, for the other strategies.
-    pub(crate) threshold: f32,
-    pub(crate) photons: Option<&'a PhotonMap>,
-}
 
 /// What a ray hit.
 #[derive(Debug, Clone, Copy)]
@@ -58,12 +35,17 @@ pub(crate) struct Shader<'a> {
     pub(crate) visits: TreeVisits,
     /// VPLs that lit each shaded hit of the current ray tree, in order of shading.
     pub(crate) selected: Vec<u32>,
+    /// VPLs of the current hit; those of every hit where all are gathered.
     candidates: Vec<Candidates>,
     stack: PacketStack,
 }
 
 impl<'a> Shader<'a> {
     pub(crate) fn new(world: &'a World, tracer: Tracer<'a>, lighting: Lighting<'a>) -> Self {
+        let candidates = match lighting {
+            Lighting::Vpls(VplLighting { tree, strategy: Strategy::All, .. }) => tree.every_block(true).collect(),
+            _ => Vec::new(),
+        };
         Self {
             world,
             tracer,
@@ -72,7 +54,7 @@ impl<'a> Shader<'a> {
             rays: Rays::default(),
             visits: TreeVisits::default(),
             selected: Vec::new(),
-            candidates: Vec::new(),
+            candidates,
             stack: PacketStack::new(),
         }
     }
@@ -146,16 +128,15 @@ impl<'a> Shader<'a> {
     /// The VPLs chosen for a hit, and caustics.
     fn gather(&mut self, vpls: &VplLighting<'_>, Found { surface, material, epsilon, .. }: &Found) -> Vec3 {
         let (tree, point) = (vpls.tree, surface.point);
-        self.candidates.clear();
+        let threshold = (vpls.strategy != Strategy::All).then_some(vpls.threshold);
+        if threshold.is_some() {
+            self.candidates.clear();
+        }
         let candidates = &mut self.candidates;
         let visits = match vpls.strategy {
             Strategy::All => TreeVisits::default(),
             Strategy::Lightcuts => select(tree, self.tracer.avx2, point, vpls.threshold, candidates),
             Strategy::LightcutsExhaustive => select_exhaustively(tree, candidates),
-        };
-        let (candidates, threshold) = match vpls.strategy {
-            Strategy::All => (vpls.all, None),
-            _ => (self.candidates.as_slice(), Some(vpls.threshold)),
         };
         let receiver = Receiver { point, normal: surface.normal, diffuse: material.diffuse, epsilon: *epsilon };
         let gathered = evaluate(&self.tracer, &tree.blocks, candidates, threshold, &receiver, &mut self.stack);

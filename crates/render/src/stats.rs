@@ -30,6 +30,23 @@ pub struct Stats {
     pub adaptive_pixels: u64,
     /// Whether the render ran to its end.
     pub complete: bool,
+    /// What ran each station, in the order place, photons, tree, gather, develop; only those that ran.
+    #[serde(default)]
+    pub devices: Vec<StationDevice>,
+    /// How often a device did not return a result, so that its work was done again.
+    #[serde(default)]
+    pub device_faults: u32,
+}
+
+/// The device that finished a station.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StationDevice {
+    /// `place`, `photons`, `tree`, `gather` or `develop`.
+    pub station: String,
+    /// `cpu`, `gpu` or `software gpu`.
+    pub kind: String,
+    /// Name of the processor or card.
+    pub name: String,
 }
 
 /// Time of one stage.
@@ -75,7 +92,7 @@ pub struct TreeVisits {
 
 impl TreeVisits {
     /// Adds another's counts.
-    pub(crate) fn add(&mut self, other: &Self) {
+    pub fn add(&mut self, other: &Self) {
         self.shaded_hits += other.shaded_hits;
         self.nodes += other.nodes;
         self.lights += other.lights;
@@ -85,7 +102,7 @@ impl TreeVisits {
 
 impl Rays {
     /// Adds another's counts.
-    pub(crate) fn add(&mut self, other: &Self) {
+    pub fn add(&mut self, other: &Self) {
         self.primary += other.primary;
         self.secondary += other.secondary;
         self.shadow += other.shadow;
@@ -102,4 +119,17 @@ pub(crate) fn timed<T>(passes: &mut Vec<PassTime>, stage: Stage, work: impl FnOn
     let cpu_s = cpu.and_then(|start| start.try_elapsed().ok()).map_or(wall_s, |d| d.as_secs_f64());
     passes.push(PassTime { name: stage.name().into(), wall_s, cpu_s });
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn statistics_from_before_there_were_devices_are_read() {
+        let stats = Stats { vpl_count: 290, ..Stats::default() };
+        let mut old = toml::Table::try_from(&stats).unwrap();
+        assert!(old.remove("devices").is_some() && old.remove("device_faults").is_some());
+        assert_eq!(old.try_into::<Stats>().unwrap(), stats);
+    }
 }

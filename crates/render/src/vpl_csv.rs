@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use lightcuts_kernel::light::Vpl;
-use lightcuts_kernel::ray::normalize;
+use lightcuts_kernel::ray::normalize_or_zero;
 use std::fmt::Write;
 
 const HEADER: &str = "x,y,z,normal_x,normal_y,normal_z,red,green,blue,attenuation";
@@ -70,7 +70,7 @@ pub fn vpls_from_csv(text: &str) -> Result<Vec<Vpl>, VplCsvError> {
         let direction = Vec3::new(nx, ny, nz);
         // Unit vectors are kept as they are, so that a set survives the round trip bit for bit.
         let is_unit = (direction.length_squared() - 1.0).abs() < 1e-5;
-        let direction = if is_unit { direction } else { normalize(direction) };
+        let direction = if is_unit { direction } else { normalize_or_zero(direction) };
         if direction == Vec3::ZERO {
             return fail(index, 1, "the normal has no length; expected a direction".to_owned());
         }

@@ -78,7 +78,7 @@ fn depth(tree: &[BinaryNode]) -> usize {
 }
 
 /// Halves the primitives by their centres along the longest axis: at most 32 levels for any input.
-fn balanced(boxes: &[(Vec3, Vec3)]) -> Vec<BinaryNode> {
+pub(crate) fn balanced(boxes: &[(Vec3, Vec3)]) -> Vec<BinaryNode> {
     let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut tree = Vec::new();
     let mut open = vec![(0, boxes.len(), None::<(usize, bool)>)];

@@ -1,15 +1,14 @@
 //! The binary tree made 8 wide, with triangles gathered into blocks.
 
 use crate::binary_tree::{self, BinaryNode, Content};
+use crate::bvh::{BvhNode, ChildRef, LANES, TriangleBlock};
 use crate::shapes::Builder;
 use glam::Vec3;
-use lightcuts_kernel::bvh::{BvhNode, ChildRef};
-use lightcuts_kernel::intersect::{LANES, TriangleBlock};
-use lightcuts_kernel::surface::{SPHERE, TRIANGLE};
+use lightcuts_kernel::intersect::{SPHERE, TRIANGLE};
 
 /// How far boxes are widened, relative to the largest coordinate in play: more than the rounding error of a hit found
 /// from anywhere in the scene, so that a hit is never lost to its box.
-const PADDING: f32 = 2e-6;
+pub(crate) const PADDING: f32 = 2e-6;
 
 /// An empty child: a box that no ray enters.
 const EMPTY_NODE: BvhNode =

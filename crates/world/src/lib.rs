@@ -3,21 +3,24 @@
 //! [`World::new`] is the one door: it checks the description, so that rendering cannot fail on content.
 
 mod binary_tree;
+pub mod bvh;
 mod collapse;
+mod compressed;
 mod lights;
 mod mesh;
 mod shapes;
 mod validate;
 
+pub use compressed::CompressedHierarchy;
 pub use validate::Defect;
 
+use bvh::{BvhNode, Geometry, TriangleBlock};
 use glam::Vec3;
-use lightcuts_kernel::bvh::{BvhNode, Geometry};
 use lightcuts_kernel::camera::{Camera, PIXEL_PITCH, THESIS_SIZE};
-use lightcuts_kernel::intersect::{Sphere, Square, TriangleBlock};
+use lightcuts_kernel::intersect::{Sphere, Square};
 use lightcuts_kernel::light::Light;
 use lightcuts_kernel::material::Material;
-use lightcuts_kernel::ray::{NONE, normalize};
+use lightcuts_kernel::ray::{NONE, normalize_or_zero};
 use lightcuts_kernel::surface::{Primitive, Surfaces, TriangleCorners};
 use lightcuts_kernel::texture::{REPEAT, STRAIGHT, STRETCH, Texture};
 use lightcuts_scene::{Issue, MaterialDesc, Projection, SceneDesc, TextureMode};
@@ -149,8 +152,8 @@ impl World {
 
 fn view(scene: &SceneDesc) -> View {
     let camera = &scene.camera;
-    let forward = normalize(camera.view);
-    let right = normalize(forward.cross(camera.up));
+    let forward = normalize_or_zero(camera.view);
+    let right = normalize_or_zero(forward.cross(camera.up));
     let eye_distance = match camera.projection {
         Projection::Perspective { distance } => distance,
         Projection::Orthographic => 0.0,

@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::light::{DIRECTIONAL, HEMISPHERE, Light, OMNI};
-use lightcuts_kernel::ray::{normalize, spawn_epsilon};
+use lightcuts_kernel::ray::{normalize_or_zero, spawn_epsilon};
 use lightcuts_scene::{LightDesc, LightKind, SceneDesc};
 
 /// All point lights of a scene in file order.
@@ -27,10 +27,10 @@ fn push(lights: &mut Vec<Light>, desc: &LightDesc) {
     match desc.kind {
         LightKind::Omni { position } => lights.push(Light { kind: OMNI, position, ..base }),
         LightKind::Hemisphere { position, direction } => {
-            lights.push(Light { kind: HEMISPHERE, position, direction: normalize(direction), ..base });
+            lights.push(Light { kind: HEMISPHERE, position, direction: normalize_or_zero(direction), ..base });
         }
         LightKind::Directional { direction } => {
-            lights.push(Light { kind: DIRECTIONAL, direction: normalize(direction), ..base });
+            lights.push(Light { kind: DIRECTIONAL, direction: normalize_or_zero(direction), ..base });
         }
         LightKind::Area { center, normal, head, width, height, .. } => {
             let cells = desc.kind.subdivision().expect("an area light is subdivided");
@@ -53,8 +53,8 @@ impl Square {
     /// The side along `head` has length `height`, the side along cross(head, normal) has length `width`. The head is
     /// made perpendicular to the normal.
     pub(crate) fn new(center: Vec3, normal: Vec3, head: Vec3, width: f32, height: f32) -> Self {
-        let normal = normalize(normal);
-        let along = normalize(head - normal * head.dot(normal));
+        let normal = normalize_or_zero(normal);
+        let along = normalize_or_zero(head - normal * head.dot(normal));
         Self { center, normal, along, across: along.cross(normal), width, height }
     }
 }

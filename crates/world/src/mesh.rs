@@ -1,7 +1,7 @@
 //! Meshes placed in the scene.
 
 use glam::{Mat3, Quat, Vec3};
-use lightcuts_kernel::ray::normalize;
+use lightcuts_kernel::ray::normalize_or_zero;
 use lightcuts_kernel::surface::TriangleCorners;
 use lightcuts_scene::{MeshDesc, MeshTriangle, Transform};
 
@@ -18,7 +18,7 @@ impl Placement {
             Mat3::IDENTITY
         } else {
             // The thesis' files turn against the right-hand rule.
-            Mat3::from_quat(Quat::from_axis_angle(normalize(transform.axis), -transform.degrees.to_radians()))
+            Mat3::from_quat(Quat::from_axis_angle(normalize_or_zero(transform.axis), -transform.degrees.to_radians()))
         };
         Self { rotation, scale: transform.scale, translation: transform.translation }
     }
@@ -29,7 +29,7 @@ impl Placement {
 
     /// Normals go with the inverse of the scale.
     fn normal(&self, n: Vec3) -> Vec3 {
-        normalize((self.rotation * n) / self.scale)
+        normalize_or_zero((self.rotation * n) / self.scale)
     }
 }
 
@@ -41,7 +41,7 @@ pub(crate) fn place_triangle(
     smooth: bool,
 ) -> ([Vec3; 3], TriangleCorners) {
     let points = triangle.positions.map(|i| placement.point(mesh.positions[i as usize]));
-    let face = normalize((points[1] - points[0]).cross(points[2] - points[0]));
+    let face = normalize_or_zero((points[1] - points[0]).cross(points[2] - points[0]));
     // A mirroring scale turns the corners' order round; the normal must stay on its side.
     let mirrored = placement.scale.x * placement.scale.y * placement.scale.z < 0.0;
     let face = if mirrored { -face } else { face };
@@ -71,7 +71,9 @@ mod tests {
         });
         // Against the right-hand rule about +y, +z goes to -x.
         assert!((placement.point(Vec3::Z) - Vec3::new(-2.0, 5.0, 0.0)).length() < 1e-6);
-        assert!((placement.normal(Vec3::new(1.0, 0.0, 1.0)) - normalize(Vec3::new(-0.5, 0.0, 1.0))).length() < 1e-6);
+        assert!(
+            (placement.normal(Vec3::new(1.0, 0.0, 1.0)) - normalize_or_zero(Vec3::new(-0.5, 0.0, 1.0))).length() < 1e-6
+        );
     }
 
     #[test]

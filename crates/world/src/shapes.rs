@@ -4,9 +4,9 @@ use crate::lights::Square as SquareFrame;
 use crate::mesh::{Placement, place_triangle};
 use crate::{ObjectBounds, flat_material};
 use glam::Vec3;
-use lightcuts_kernel::intersect::{Sphere, Square};
+use lightcuts_kernel::intersect::{SPHERE, SQUARE, Sphere, Square, TRIANGLE};
 use lightcuts_kernel::material::Material;
-use lightcuts_kernel::surface::{Primitive, SPHERE, SQUARE, TRIANGLE, TriangleCorners};
+use lightcuts_kernel::surface::{Primitive, TriangleCorners};
 use lightcuts_scene::{LightKind, MaterialDesc, ObjectDesc, SceneDesc, ShapeDesc};
 
 /// Collects primitives. `boxes` holds the bounds of each.
@@ -64,7 +64,7 @@ impl<'a> Builder<'a> {
         match object.shape {
             ShapeDesc::Sphere { center, radius } => {
                 let primitive = self.push(SPHERE, self.spheres.len(), material, (center - radius, center + radius));
-                self.spheres.push(Sphere { center, radius, primitive });
+                self.spheres.push(Sphere { center, radius, primitive, padding: [0; 3] });
             }
             ShapeDesc::Square { center, normal, head, width, height } => {
                 self.add_square(&SquareFrame::new(center, normal, head, width, height), material);

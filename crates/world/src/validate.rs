@@ -1,9 +1,8 @@
 //! What must hold of a world: every reference points at something and every box holds what is under it.
 
 use crate::World;
+use crate::bvh::{BvhNode, ChildRef, LANES, STACK_SIZE};
 use glam::Vec3;
-use lightcuts_kernel::bvh::{BvhNode, ChildRef, STACK_SIZE};
-use lightcuts_kernel::intersect::LANES;
 use lightcuts_kernel::ray::NONE;
 
 /// A broken rule of a [`World`]: a defect of this crate, never of a scene.

@@ -76,6 +76,12 @@ fn once(cli: &Path, case: &Case, configuration: Configuration, models: &Path, fo
     serde_json::from_str(&text).context("the statistics lack something")
 }
 
+/// The run whose figure is the middle one, so that its other figures go with it. `runs` has an odd number.
+pub(super) fn middle<T>(mut runs: Vec<T>, figure: impl Fn(&T) -> f64) -> T {
+    runs.sort_by(|a, b| figure(a).total_cmp(&figure(b)));
+    runs.swap_remove(runs.len() / 2)
+}
+
 /// The middle value, or the mean of the two middle ones. `values` is not empty.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
@@ -92,6 +98,13 @@ mod tests {
         assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(vec![9.0]), 9.0);
         assert_eq!(median(vec![4.0, 1.0, 3.0, 100.0]), 3.5);
+    }
+
+    #[test]
+    fn the_middle_run_keeps_its_figures() {
+        let runs = vec![(3.0, "slow"), (1.0, "fast"), (2.0, "middle")];
+        assert_eq!(middle(runs, |run| run.0), (2.0, "middle"));
+        assert_eq!(middle(vec![9.0], |&run| run), 9.0);
     }
 
     #[test]

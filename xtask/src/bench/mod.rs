@@ -1,79 +1,28 @@
-//! `cargo xtask bench`: measurements that are kept in `docs/benchmarks.md`.
+//! `cargo xtask bench`: measurements that are kept in `docs/benchmarks.md` and `benches/LOG.md`.
 
 mod experiment;
+mod gpu;
 mod measure;
 mod record;
+mod row;
 mod table;
+mod thesis;
 
-use crate::project;
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use clap::Subcommand;
-use experiment::{Case, Scene};
-use measure::Configuration;
-use std::io::Write as _;
-use std::path::PathBuf;
-use table::Row;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Bench {
     /// The thesis' experiment: its three scenes without and with lightcuts, against the original program.
-    Thesis(ThesisArgs),
-}
-
-#[derive(Debug, clap::Args)]
-pub(crate) struct ThesisArgs {
-    /// Runs of each configuration; the median counts.
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=100))]
-    runs: u32,
-    /// Folder with venus.obj and galleon.obj, which are not part of the project [default: ../shared/models].
-    #[arg(long, value_name = "DIR")]
-    models: Option<PathBuf>,
-    /// Scene to measure; may be repeated [default: all].
-    #[arg(long = "scene", value_name = "NAME", value_enum)]
-    scenes: Vec<Scene>,
-    /// Append the table to a Markdown file, with the date, the processor and the git revision.
-    #[arg(long, value_name = "FILE")]
-    append: Option<PathBuf>,
-    /// Date of the entry, such as 2026-11-30 [default: today, UTC].
-    #[arg(long, requires = "append")]
-    date: Option<String>,
+    Thesis(thesis::Args),
+    /// A GPU: the thesis' scenes, rays, choice of VPLs, and how long its submissions take.
+    Gpu(gpu::Args),
 }
 
 /// Runs a benchmark.
 pub(crate) fn run(bench: &Bench) -> Result<()> {
-    let Bench::Thesis(args) = bench;
-    thesis(args)
-}
-
-fn thesis(args: &ThesisArgs) -> Result<()> {
-    let models = args.models.clone().unwrap_or_else(project::shared_models);
-    let cli = project::release_cli()?;
-    let folder = tempfile::tempdir().context("cannot make a folder for the results")?;
-    let scenes = if args.scenes.is_empty() { &Scene::ALL[..] } else { &args.scenes };
-    let mut rows = Vec::new();
-    for scene in scenes {
-        let case = Case::new(*scene, &models);
-        if let Some(absent) = case.absent_model {
-            println!("{absent} is not here: {} takes its place, without a factor", case.file);
-        }
-        let median = measure::interleaved(&cli, &case, &models, folder.path(), args.runs)?;
-        let plain_s = median[Configuration::Plain as usize].total_cpu_s;
-        rows.extend(Configuration::ALL.map(|configuration| {
-            let measured = median[configuration as usize];
-            Row::new(&case, configuration, measured, (configuration == Configuration::Lightcuts).then_some(plain_s))
-        }));
+    match bench {
+        Bench::Thesis(args) => thesis::run(args),
+        Bench::Gpu(args) => gpu::run(args),
     }
-    let table = table::markdown(&rows);
-    println!("\n{table}");
-    if let Some(path) = &args.append {
-        let entry = record::entry(args.date.as_deref(), args.runs, &table);
-        let mut file = std::fs::OpenOptions::new()
-            .append(true)
-            .create(true)
-            .open(path)
-            .with_context(|| format!("cannot open {}", path.display()))?;
-        file.write_all(entry.as_bytes()).with_context(|| format!("cannot write to {}", path.display()))?;
-        println!("appended to {}", path.display());
-    }
-    Ok(())
 }

@@ -1,19 +1,41 @@
-//! An entry of `docs/benchmarks.md`: when, on what and of what the numbers are.
+//! An entry of a log of measurements: when, on what and of what the numbers are.
 
 use crate::project;
+use anyhow::{Context as _, Result};
+use lightcuts::device::processor_name;
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The entry for a table, of today unless a date is given.
 pub(super) fn entry(date: Option<&str>, runs: u32, table: &str) -> String {
-    let date = date.map_or_else(today, str::to_owned);
     let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let median = if runs == 1 { "one run".to_owned() } else { format!("median of {runs} runs") };
-    format!(
-        "\n## {date}, revision {}\n\n{}, {threads} hardware threads; {median} per configuration.\n\n{table}",
-        revision(),
-        processor(),
-    )
+    let heading = heading(date, None);
+    format!("{heading}{}, {threads} hardware threads; {median} per configuration.\n\n{table}", processor_name())
+}
+
+/// The heading of an entry: the date, today's unless one is given, the git revision, and of what the numbers are.
+pub(super) fn heading(date: Option<&str>, subject: Option<&str>) -> String {
+    let date = date.map_or_else(today, str::to_owned);
+    let subject = subject.map(|subject| format!(", {subject}")).unwrap_or_default();
+    format!("\n## {date}, revision {}{subject}\n\n", revision())
+}
+
+/// Adds an entry to a file; a new file begins with an introduction.
+pub(super) fn append(path: &Path, introduction: &str, entry: &str) -> Result<()> {
+    let is_new = fs::metadata(path).map_or(true, |file| file.len() == 0);
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    }
+    let open = fs::OpenOptions::new().append(true).create(true).open(path);
+    let mut file = open.with_context(|| format!("cannot open {}", path.display()))?;
+    let text = if is_new { introduction.to_owned() + entry } else { entry.to_owned() };
+    file.write_all(text.as_bytes()).with_context(|| format!("cannot write to {}", path.display()))?;
+    println!("appended to {}", path.display());
+    Ok(())
 }
 
 fn today() -> String {
@@ -39,17 +61,6 @@ fn date_of(mut day: u64) -> String {
         month += 1;
     }
     format!("{year:04}-{month:02}-{:02}", day + 1)
-}
-
-/// The processor's name, where the system tells it.
-fn processor() -> String {
-    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    model_name(&text).unwrap_or("unknown processor").to_owned()
-}
-
-fn model_name(cpuinfo: &str) -> Option<&str> {
-    let line = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
-    line.split_once(':').map(|(_, name)| name.trim())
 }
 
 /// The git revision, with a remark if files have changed since.
@@ -85,18 +96,19 @@ mod tests {
     }
 
     #[test]
-    fn the_processor_is_named() {
-        assert_eq!(
-            model_name("processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\nflags\t: fpu\n"),
-            Some("Some CPU @ 2 GHz")
-        );
-        assert_eq!(model_name("processor : 0\n"), None);
-    }
-
-    #[test]
     fn an_entry_has_its_date_and_table() {
         let entry = entry(Some("2026-11-30"), 3, "| a |\n");
         assert!(entry.starts_with("\n## 2026-11-30, revision "), "{entry}");
         assert!(entry.ends_with("median of 3 runs per configuration.\n\n| a |\n"), "{entry}");
+    }
+
+    #[test]
+    fn only_a_new_file_is_introduced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("benches/LOG.md");
+        for entry in ["first\n", "second\n"] {
+            append(&path, "# Log\n", entry).unwrap();
+        }
+        assert_eq!(fs::read_to_string(path).unwrap(), "# Log\nfirst\nsecond\n");
     }
 }

@@ -1,120 +1,50 @@
-//! The table of results, in Markdown that reads well as plain text too.
+//! Tables in Markdown that read well as plain text too.
 
-use super::experiment::Case;
-use super::measure::{Configuration, Measured};
-
-/// Most CPU seconds of lightcuts relative to plain: choosing must not cost more than a tenth of what it chooses among.
-const MAX_LIGHTCUTS_RATIO: f64 = 1.10;
-
-const HEADER: [&str; 9] = [
-    "scene",
-    "configuration",
-    "VPLs",
-    "light ratio",
-    "CPU s",
-    "original CPU s",
-    "factor",
-    "target",
-    "lightcuts / plain",
-];
-
-/// One line of the table.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Row {
-    cells: [String; HEADER.len()],
+/// A table; every row has a cell for each column of the header.
+#[derive(Debug, Clone)]
+pub(super) struct Table {
+    /// The header first.
+    rows: Vec<Vec<String>>,
 }
 
-impl Row {
-    /// `plain_cpu_s` is what the plain configuration took, where this one is to be compared with it.
-    pub(super) fn new(case: &Case, configuration: Configuration, measured: Measured, plain_cpu_s: Option<f64>) -> Self {
-        let absent = || "-".to_owned();
-        let (original, factor, target) = match case.reference {
-            None => (absent(), absent(), absent()),
-            Some(reference) => {
-                let original = reference.original_cpu_s[configuration as usize];
-                let factor = original / measured.total_cpu_s;
-                let target = reference.target_factor;
-                let verdict = verdict(factor >= target);
-                (format!("{original:.1}"), format!("{factor:.1}"), format!("{target:.0} {verdict}"))
-            }
-        };
-        let ratio = plain_cpu_s.map_or_else(absent, |plain| {
-            let ratio = measured.total_cpu_s / plain;
-            format!("{ratio:.2}, at most {MAX_LIGHTCUTS_RATIO:.2} {}", verdict(ratio <= MAX_LIGHTCUTS_RATIO))
-        });
-        let cells = [
-            case.title.clone(),
-            configuration.title().to_owned(),
-            measured.vpl_count.to_string(),
-            format!("{:.4} %", measured.light_ratio_percent),
-            format!("{:.2}", measured.total_cpu_s),
-            original,
-            factor,
-            target,
-            ratio,
-        ];
-        Self { cells }
+impl Table {
+    pub(super) fn new(header: &[&str]) -> Self {
+        Self { rows: vec![header.iter().map(|&title| title.to_owned()).collect()] }
     }
-}
 
-fn verdict(met: bool) -> &'static str {
-    if met { "met" } else { "missed" }
-}
+    pub(super) fn push(&mut self, cells: impl IntoIterator<Item = String>) {
+        let row: Vec<String> = cells.into_iter().collect();
+        debug_assert_eq!(row.len(), self.rows[0].len(), "{row:?}");
+        self.rows.push(row);
+    }
 
-/// The table, its columns aligned.
-pub(super) fn markdown(rows: &[Row]) -> String {
-    let header = Row { cells: HEADER.map(str::to_owned) };
-    let all: Vec<&Row> = std::iter::once(&header).chain(rows).collect();
-    let width = |column: usize| all.iter().map(|row| row.cells[column].chars().count()).max().unwrap_or(0);
-    let widths: [usize; HEADER.len()] = std::array::from_fn(width);
-    let line = |row: &Row| {
-        let cells = row.cells.iter().zip(widths).map(|(cell, width)| format!(" {cell:<width$} |"));
-        format!("|{}\n", cells.collect::<String>())
-    };
-    let rule = format!("|{}\n", widths.map(|width| format!(" {} |", "-".repeat(width))).concat());
-    line(&header) + &rule + &rows.iter().map(line).collect::<String>()
+    /// The text, its columns aligned.
+    pub(super) fn markdown(&self) -> String {
+        let width = |column: usize| self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..self.rows[0].len()).map(width).collect();
+        let line = |row: &Vec<String>| {
+            let cells = row.iter().zip(&widths).map(|(cell, &width)| format!(" {cell:<width$} |"));
+            format!("|{}\n", cells.collect::<String>())
+        };
+        let rule = line(&widths.iter().map(|&width| "-".repeat(width)).collect());
+        line(&self.rows[0]) + &rule + &self.rows[1..].iter().map(line).collect::<String>()
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::experiment::Scene;
     use super::*;
-    use std::path::Path;
-
-    fn measured(total_cpu_s: f64) -> Measured {
-        Measured { vpl_count: 290, light_ratio_percent: 68.31304, total_cpu_s }
-    }
-
-    fn case(scene: Scene) -> Case {
-        Case::new(scene, Path::new("no such folder"))
-    }
-
-    #[test]
-    fn targets_are_met_or_missed() {
-        let row = |seconds: f64| Row::new(&case(Scene::Simple), Configuration::Lightcuts, measured(seconds), Some(2.0));
-        let met = row(2.2).cells;
-        let expected =
-            ["Simple", "lightcuts", "290", "68.3130 %", "2.20", "14.7", "6.7", "5 met", "1.10, at most 1.10 met"];
-        assert_eq!(met, expected);
-        let missed = row(3.0).cells;
-        assert_eq!(missed[6..], ["4.9", "5 missed", "1.50, at most 1.10 missed"]);
-    }
-
-    #[test]
-    fn stand_ins_have_no_factor() {
-        let row = Row::new(&case(Scene::Venus), Configuration::Plain, measured(1.0), None);
-        assert_eq!(row.cells[0], "Venus (stand-in)");
-        assert_eq!(row.cells[5..], ["-", "-", "-", "-"]);
-    }
 
     #[test]
     fn columns_are_aligned() {
-        let rows = [Scene::Simple, Scene::Galleon]
-            .map(|scene| Row::new(&case(scene), Configuration::Plain, measured(1.0), None));
-        let text = markdown(&rows);
-        let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines.len(), 4);
-        let borders = |line: &str| line.match_indices('|').map(|(i, _)| i).collect::<Vec<_>>();
-        assert!(lines.iter().all(|line| borders(line) == borders(lines[0])), "{text}");
+        let mut table = Table::new(&["scene", "s"]);
+        table.push(["Galleon (stand-in)".to_owned(), "1.25".to_owned()]);
+        table.push(["Größe".to_owned(), "10.00".to_owned()]);
+        let text = table.markdown();
+        let borders = |line: &str| line.chars().enumerate().filter(|&(_, c)| c == '|').map(|(i, _)| i).collect();
+        let lines: Vec<Vec<usize>> = text.lines().map(borders).collect();
+        assert_eq!(lines.len(), 4, "{text}");
+        assert!(lines.iter().all(|borders| *borders == [0, 21, 29]), "{text}");
+        assert!(text.starts_with("| scene "), "{text}");
     }
 }

@@ -1,6 +1,7 @@
 //! The command line. Every parameter is declared once, here: help, completions, man pages and job files follow from it.
 
 mod compare;
+mod device;
 mod display;
 mod effects;
 mod experiment;
@@ -13,6 +14,7 @@ mod tests;
 mod value;
 
 pub(crate) use compare::{ChannelOrder, CompareArgs, InputArgs};
+pub(crate) use device::{DeviceArgs, DevicesArgs};
 pub(crate) use experiment::ExperimentArgs;
 pub(crate) use render::{
     JobArgs, OutputArgs, PerformanceArgs, ProgressStyle, RenderArgs, SimdChoice, TalkArgs, ThreadArgs,
@@ -29,7 +31,7 @@ const AFTER_HELP: &str = "\
 Exit codes:
     0  done
     1  the render finished, but an output could not be written
-    2  bad usage, job file or parameters
+    2  bad usage, job file or parameters; a device that is not there
     3  a scene, model, texture, picture or VPL file cannot be read or is malformed
   130  interrupted (SIGINT, SIGTERM); what was rendered so far is written
   Those of `lightcuts compare` are a verdict; see its help.
@@ -61,6 +63,9 @@ pub(crate) enum Command {
     /// Show what was understood of a scene, or what a picture holds.
     #[command(after_help = AFTER_HELP)]
     Info(InfoArgs),
+    /// List the devices that can render, and say which one is taken without --device.
+    #[command(after_help = device::AFTER_HELP)]
+    Devices(DevicesArgs),
     /// Say how far two pictures differ.
     #[command(after_help = compare::AFTER_HELP)]
     Compare(Box<CompareArgs>),

@@ -1,6 +1,6 @@
 //! Arguments of `render`: input, job, outputs, and what does not belong to the job.
 
-use super::{SearchArgs, SettingFlags};
+use super::{DeviceArgs, SearchArgs, SettingFlags};
 use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use std::path::PathBuf;
 const MAX_THREADS: i64 = 1024;
 
 /// Arguments of `render`.
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct RenderArgs {
     /// A scene; or a picture (.exr, .png) that lightcuts wrote, or a job (.toml), to render what it names.
@@ -78,10 +78,12 @@ pub(crate) struct JobArgs {
     pub(crate) read_vpls: Option<PathBuf>,
 }
 
-/// What changes the time a render takes, never the picture; not part of the job.
-#[derive(Debug, Default, Args)]
+/// What changes the time a render takes, and the picture by rounding at most; not part of the job.
+#[derive(Debug, Args)]
 #[command(next_help_heading = "Performance")]
 pub(crate) struct PerformanceArgs {
+    #[command(flatten)]
+    pub(crate) devices: DeviceArgs,
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
     /// Vector instructions of the processor; `off` to track down a fault.
@@ -104,7 +106,7 @@ pub(crate) enum ProgressStyle {
     Bar,
     /// Few lines of text
     Plain,
-    /// A JSON object per line: stage, done, total, elapsed_s, remaining_s
+    /// A JSON object per line: stage, done, total, elapsed_s, remaining_s; or note
     Json,
     /// Nothing
     None,

@@ -37,6 +37,10 @@ pub(super) fn run_failure(error: RunError, directory: &Path) -> Failure {
     match error {
         RunError::Results(error) => results_failure(&error),
         RunError::World { .. } => Failure::input(error),
+        RunError::Device { .. } => Failure::usage(
+            error.to_string(),
+            "leave the configuration out with --only; rows that were finished before are kept",
+        ),
         RunError::Settings(_) | RunError::Threads(_) => Failure::usage(error.to_string(), "change the experiment file"),
         RunError::NotReproducible { .. } => {
             Failure::new(Exit::NotWritten, MietteDiagnostic::new(error.to_string()).with_help(help))

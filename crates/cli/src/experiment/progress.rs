@@ -2,7 +2,7 @@
 
 use super::text::title;
 use crate::args::ProgressStyle;
-use crate::progress::{JSON_PAUSE, chosen_style};
+use crate::progress::{JSON_PAUSE, chosen_style, tell_note};
 use crate::{console, interrupt};
 use indicatif::{ProgressBar, ProgressStyle as BarStyle};
 use lightcuts::image::metrics::Metric;
@@ -92,6 +92,10 @@ impl Monitor for Progress {
                 _ => {}
             }
         });
+    }
+
+    fn note(&self, text: &str) {
+        self.with(|state| tell_note(self.style, &state.bar, text));
     }
 
     fn cancelled(&self) -> bool {

@@ -1,5 +1,6 @@
 //! What the command says of an experiment on standard output.
 
+use lightcuts::device::DeviceKind;
 use lightcuts_experiment::Outcome;
 use lightcuts_experiment::plan::{Plan, PlannedJob};
 use lightcuts_experiment::record::Row;
@@ -64,7 +65,7 @@ fn quoted(path: &Path) -> String {
 struct Lines(String);
 
 impl Lines {
-    /// What the experiment is: its name, stand-ins, what is absent.
+    /// What the experiment is: its name, stand-ins, GPUs, what is absent.
     fn of(plan: &Plan) -> Self {
         let mut text = Self(String::new());
         text.line("experiment", &plan.header.name);
@@ -74,6 +75,13 @@ impl Lines {
                 let file = scene.file.display();
                 text.line("stand-in", &format!("{}: {file}, {note} ({missing} was not found)", info.name));
             }
+        }
+        for adapter in plan.used_adapters() {
+            let slow = match adapter.kind {
+                DeviceKind::SoftwareGpu => ": a driver that computes on the processor, slower than the CPU renderer",
+                DeviceKind::Cpu | DeviceKind::Gpu => "",
+            };
+            text.line("GPU", &format!("{}{slow}", adapter.name));
         }
         for configuration in &plan.header.configurations {
             if let Some(why) = &configuration.absent {

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 mod compare;
+mod devices;
 mod experiment;
 mod inputs;
 mod interrupt;

@@ -2,6 +2,7 @@
 
 use super::fault::{PlanError, Source};
 use super::file::{ConfigurationTable, Document, Place, covers};
+use lightcuts::gpu::DeviceChoice;
 use lightcuts::image::metrics::Metric;
 use std::collections::HashSet;
 
@@ -119,6 +120,7 @@ fn configurations(source: &Source, document: &Document) -> Result<(), PlanError>
     for (i, configuration) in all.iter().enumerate() {
         let path = format!("configuration.{i}");
         restriction(source, &path, configuration.scenes.as_ref(), document)?;
+        device(source, &format!("{path}.device"), &configuration.device)?;
         if configuration.at == Place::LastPoint && !configuration.references.is_empty() {
             let message = "a configuration at the last point is a reference for others and has none itself";
             return Err(source.fault(&format!("{path}.references"), message, "no `references`, or no `at`"));
@@ -135,6 +137,20 @@ fn configurations(source: &Source, document: &Document) -> Result<(), PlanError>
         }
     }
     Ok(())
+}
+
+/// What is measured does not depend on what a machine happens to have.
+fn device(source: &Source, path: &str, device: &DeviceChoice) -> Result<(), PlanError> {
+    let is_definite = match device {
+        DeviceChoice::Cpu | DeviceChoice::Gpu => true,
+        DeviceChoice::Auto => false,
+        DeviceChoice::Named(name) => !name.trim().is_empty(),
+    };
+    if is_definite {
+        return Ok(());
+    }
+    let message = format!("`{device}` names no device");
+    Err(source.fault(path, message, "`cpu`, `gpu` or a part of an adapter's name"))
 }
 
 fn check_reference(

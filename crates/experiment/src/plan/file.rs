@@ -1,9 +1,10 @@
 //! Experiment files: TOML, checked as far as that goes without the scenes.
 
 use super::fault::{PlanError, Source};
-use super::{check, section};
+use super::{check, device, section};
 use crate::layout::Section;
 use lightcuts::Settings;
+use lightcuts::gpu::DeviceChoice;
 use lightcuts::rendering::{TomlFault, value_at};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -87,12 +88,14 @@ pub(super) struct StandIn {
 
 /// A `[[configuration]]`.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct ConfigurationTable {
     pub(super) name: String,
     pub(super) title: Option<String>,
+    #[serde(default = "device::cpu", deserialize_with = "device::read")]
+    pub(super) device: DeviceChoice,
     #[serde(default)]
-    pub(super) device: Device,
+    pub(super) scene_values: SceneValues,
     #[serde(default)]
     pub(super) at: Place,
     #[serde(default)]
@@ -102,14 +105,14 @@ pub(super) struct ConfigurationTable {
     pub(super) settings: Table,
 }
 
-/// What renders.
+/// Which of a scene's values hold where it recommends two, one per device.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Device {
-    /// The processor.
+pub(super) enum SceneValues {
+    /// Those for a CPU, whatever renders: so devices can be compared.
     #[default]
     Cpu,
-    /// A graphics card.
+    /// Those for a GPU.
     Gpu,
 }
 

@@ -1,14 +1,16 @@
 //! The jobs of a plan: every render, in order, references before what is compared with them.
 
 use super::check;
+use super::device::Devices;
 use super::fault::PlanError;
-use super::file::{Device, ExperimentFile, Place, covers};
+use super::file::{ExperimentFile, Place, covers};
 use super::scene::PlannedScene;
 use super::settings::{Tables, resolve};
 use crate::hash::Fields;
 use crate::record::JobInfo;
 use crate::results::Key;
 use lightcuts::Settings;
+use lightcuts::gpu::DeviceChoice;
 use lightcuts::image::metrics::{Metric, MetricOptions};
 use std::ops::Range;
 
@@ -28,6 +30,8 @@ pub struct PlannedJob {
     pub point: Option<String>,
     /// Number of the run, from 1.
     pub run: u32,
+    /// What renders it, as it was asked for.
+    pub device: DeviceChoice,
     /// Every setting, the seed included.
     pub settings: Settings,
     /// Run 1 of the same job, by its number in the plan; itself if it is that.
@@ -81,9 +85,10 @@ pub(super) struct Conditions<'a> {
 pub(super) fn all(
     file: &ExperimentFile,
     scenes: &[PlannedScene],
+    devices: &Devices,
     conditions: &Conditions<'_>,
 ) -> Result<Vec<PlannedJob>, PlanError> {
-    let mut jobs = Jobs { file, conditions, list: Vec::new(), at_last_point: 0..0 };
+    let mut jobs = Jobs { file, devices, conditions, list: Vec::new(), at_last_point: 0..0 };
     for (i, scene) in scenes.iter().enumerate() {
         let points = points(file, &scene.name);
         let start = jobs.list.len();
@@ -99,6 +104,7 @@ pub(super) fn all(
 /// Jobs on their way.
 struct Jobs<'a> {
     file: &'a ExperimentFile,
+    devices: &'a Devices,
     conditions: &'a Conditions<'a>,
     list: Vec<PlannedJob>,
     /// Those of the current scene that are rendered at its last point alone.
@@ -114,7 +120,7 @@ impl Jobs<'_> {
         point: Option<usize>,
         place: Place,
     ) -> Result<(), PlanError> {
-        let configurations = configurations(self.file, &scene.name, place);
+        let configurations = configurations(self.file, self.devices, &scene.name, place);
         for &seed in &self.file.document.seeds {
             self.add(scene, Tables { scene: i, configuration: 0, point }, &configurations, seed)?;
             check::jobs(&self.file.source, self.list.len().saturating_mul(self.file.document.runs as usize))?;
@@ -147,6 +153,7 @@ impl Jobs<'_> {
                 configuration: table.name.clone(),
                 point: tables.point.map(|point| self.file.document.point[point].name.clone()),
                 run: 1,
+                device: table.device.clone(),
                 settings,
                 first_run: self.list.len(),
                 references: table.references.iter().filter_map(number).collect(),
@@ -185,9 +192,9 @@ fn points(file: &ExperimentFile, scene: &str) -> Vec<Option<usize>> {
 }
 
 /// The configurations of a scene at a place that have a device, by their numbers, those without references first.
-fn configurations(file: &ExperimentFile, scene: &str, place: Place) -> Vec<usize> {
-    let all = file.document.configuration.iter().enumerate();
-    let here = all.filter(|(_, it)| it.device == Device::Cpu && it.at == place && covers(it.scenes.as_ref(), scene));
+fn configurations(file: &ExperimentFile, devices: &Devices, scene: &str, place: Place) -> Vec<usize> {
+    let all = file.document.configuration.iter().enumerate().filter(|(i, _)| devices.absent(*i).is_none());
+    let here = all.filter(|(_, it)| it.at == place && covers(it.scenes.as_ref(), scene));
     let (compared, references): (Vec<_>, Vec<_>) = here.partition(|(_, it)| !it.references.is_empty());
     references.into_iter().chain(compared).map(|(i, _)| i).collect()
 }
@@ -219,7 +226,7 @@ fn hash(job: &PlannedJob, jobs: &[PlannedJob], scene: &str, conditions: &Conditi
     let mut fields = Fields::of("lightcuts job 1")
         .with("scene", scene)
         .with("settings", settings)
-        .with("device", "cpu")
+        .with("device", job.device.to_string())
         .with("threads", conditions.threads.to_string())
         .with("run", job.run.to_string());
     for &reference in &job.references {

@@ -4,6 +4,7 @@
 //! each job its hash. Nothing is rendered or written here.
 
 mod check;
+mod device;
 mod fault;
 mod file;
 mod job;
@@ -20,13 +21,12 @@ pub use select::UnknownName;
 
 use crate::published::Published;
 use crate::record::{ConfigurationInfo, FORMAT, Header, SceneInfo};
-use file::{Device, Document};
+use device::Devices;
+use file::Document;
 use job::Conditions;
+use lightcuts::gpu::{AdapterSummary, choose};
 use lightcuts::image::metrics::{Metric, MetricOptions};
 use std::path::PathBuf;
-
-/// Why a configuration of a GPU is not rendered.
-const NO_GPU: &str = "no GPU device in this version";
 
 /// Every render of an experiment, in order.
 #[derive(Debug)]
@@ -39,6 +39,8 @@ pub struct Plan {
     pub jobs: Vec<PlannedJob>,
     /// Threads that render.
     pub threads: usize,
+    /// The graphics adapters of this machine, if any configuration asks for one.
+    pub adapters: Vec<AdapterSummary>,
     /// What is measured against references.
     pub metrics: Vec<Metric>,
     /// How it is measured.
@@ -46,8 +48,18 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The plan of an experiment. Models and textures are searched beside their scenes, then in `search_paths`.
+    /// The plan of an experiment on this machine. Models and textures are searched beside their scenes, then in
+    /// `search_paths`.
     pub fn new(file: &ExperimentFile, search_paths: &[PathBuf]) -> Result<Self, PlanError> {
+        Self::on(device::adapters(&file.document), file, search_paths)
+    }
+
+    /// The same on a machine with these graphics adapters.
+    pub fn on(
+        adapters: Vec<AdapterSummary>,
+        file: &ExperimentFile,
+        search_paths: &[PathBuf],
+    ) -> Result<Self, PlanError> {
         let document = &file.document;
         let published = published(file)?;
         let scenes = (0..document.scene.len()).map(|i| PlannedScene::load(file, i, search_paths));
@@ -56,9 +68,20 @@ impl Plan {
         let metric_options = MetricOptions::default();
         let threads = threads(document.threads);
         let conditions = Conditions { threads, metrics: &metrics, options: &metric_options };
-        let jobs = job::all(file, &scenes, &conditions)?;
-        let header = header(file, &scenes, published, &jobs);
-        Ok(Self { header, scenes, jobs, threads, metrics, metric_options })
+        let devices = Devices::new(document, &adapters);
+        let jobs = job::all(file, &scenes, &devices, &conditions)?;
+        let header = header(file, &scenes, &devices, published, &jobs);
+        Ok(Self { header, scenes, jobs, threads, adapters, metrics, metric_options })
+    }
+
+    /// The adapters that jobs are rendered on, each once, in the order of the configurations.
+    pub fn used_adapters(&self) -> Vec<&AdapterSummary> {
+        let mut places: Vec<usize> = Vec::new();
+        for job in &self.jobs {
+            let place = choose(&job.device, &self.adapters).ok().flatten();
+            places.extend(place.filter(|place| !places.contains(place)));
+        }
+        places.into_iter().map(|place| &self.adapters[place]).collect()
     }
 }
 
@@ -85,7 +108,13 @@ fn published(file: &ExperimentFile) -> Result<Published, PlanError> {
         .map_err(|error| file.source.fault("published", error.to_string(), "CSV files of published figures"))
 }
 
-fn header(file: &ExperimentFile, scenes: &[PlannedScene], published: Published, jobs: &[PlannedJob]) -> Header {
+fn header(
+    file: &ExperimentFile,
+    scenes: &[PlannedScene],
+    devices: &Devices,
+    published: Published,
+    jobs: &[PlannedJob],
+) -> Header {
     let document = &file.document;
     let titled = |title: &Option<String>, name: &str| title.clone().unwrap_or_else(|| name.to_owned());
     let scene_info = |(table, scene): (&file::SceneTable, &PlannedScene)| SceneInfo {
@@ -93,10 +122,10 @@ fn header(file: &ExperimentFile, scenes: &[PlannedScene], published: Published, 
         title: titled(&table.title, &table.name),
         stand_in: table.stand_in.as_ref().filter(|_| !scene.missing.is_empty()).map(|stand_in| stand_in.note.clone()),
     };
-    let configuration_info = |table: &file::ConfigurationTable| ConfigurationInfo {
+    let configuration_info = |(i, table): (usize, &file::ConfigurationTable)| ConfigurationInfo {
         name: table.name.clone(),
         title: titled(&table.title, &table.name),
-        absent: (table.device == Device::Gpu).then(|| NO_GPU.to_owned()),
+        absent: devices.absent(i).map(str::to_owned),
         references: table.references.clone(),
     };
     Header {
@@ -105,7 +134,7 @@ fn header(file: &ExperimentFile, scenes: &[PlannedScene], published: Published, 
         title: titled(&document.title, &document.name),
         description: document.description.clone(),
         scenes: document.scene.iter().zip(scenes).map(scene_info).collect(),
-        configurations: document.configuration.iter().map(configuration_info).collect(),
+        configurations: document.configuration.iter().enumerate().map(configuration_info).collect(),
         points: points(document),
         runs: document.runs,
         seeds: document.seeds.clone(),

@@ -1,7 +1,7 @@
 //! The settings of a job: tables laid over what its scene recommends.
 
 use super::fault::PlanError;
-use super::file::ExperimentFile;
+use super::file::{ExperimentFile, SceneValues};
 use lightcuts::Settings;
 use lightcuts::rendering::{TomlFault, overlay};
 use lightcuts::scene::SceneDesc;
@@ -23,8 +23,9 @@ pub(super) fn resolve(
     scene: &SceneDesc,
     seed: u32,
 ) -> Result<Settings, PlanError> {
+    let values = file.document.configuration[tables.configuration].scene_values;
     let unexpected = |message: &str| file.source.fault("settings", message, "settings as in a job file");
-    let mut table = Table::try_from(Settings::for_scene(scene)).map_err(|error| unexpected(&error.to_string()))?;
+    let mut table = Table::try_from(recommended(scene, values)).map_err(|error| unexpected(&error.to_string()))?;
     let layers = layers(file, tables);
     for (_, layer) in &layers {
         overlay(&mut table, layer);
@@ -39,6 +40,22 @@ pub(super) fn resolve(
         file.source.fault(&place, format!("{} is {}", error.name, error.value), &error.expected)
     })?;
     Ok(settings)
+}
+
+/// What a scene recommends to one kind of device.
+fn recommended(scene: &SceneDesc, values: SceneValues) -> Settings {
+    let mut settings = Settings::for_scene(scene);
+    if values == SceneValues::Gpu {
+        if let Some(vpl) = scene.defaults.vpl {
+            settings.vpl.probability = vpl.probability.gpu;
+            settings.vpl.min_illumination = vpl.min_illumination.gpu;
+            settings.vpl.attenuation = vpl.attenuation.gpu;
+        }
+        if let Some(threshold) = scene.defaults.threshold {
+            settings.gather.threshold = threshold.gpu;
+        }
+    }
+    settings
 }
 
 /// Each table with its place in the file, the lowest first.

@@ -105,8 +105,8 @@ pub(super) struct Cell {
     pub(super) kind: Kind,
     /// Smaller, under the text.
     pub(super) detail: Option<String>,
-    /// Number of its note.
-    pub(super) note: Option<usize>,
+    /// Numbers of its notes.
+    pub(super) notes: Vec<usize>,
 }
 
 /// What a cell is.
@@ -128,7 +128,7 @@ pub(super) enum Kind {
 
 impl Cell {
     pub(super) fn new(kind: Kind, text: impl Into<String>) -> Self {
-        Self { text: text.into(), kind, detail: None, note: None }
+        Self { text: text.into(), kind, detail: None, notes: Vec::new() }
     }
 
     pub(super) fn name(text: impl Into<String>) -> Self {
@@ -160,8 +160,11 @@ impl Cell {
         Self { detail, ..self }
     }
 
-    pub(super) fn with_note(self, note: Option<usize>) -> Self {
-        Self { note, ..self }
+    /// With one note more, if there is one.
+    pub(super) fn with_note(mut self, note: Option<usize>) -> Self {
+        self.notes.extend(note);
+        self.notes.sort_unstable();
+        self
     }
 }
 

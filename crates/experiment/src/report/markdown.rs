@@ -132,8 +132,9 @@ fn cell(cell: &Cell) -> String {
     if let Some(detail) = &cell.detail {
         let _ = write!(text, " ({})", escaped(detail));
     }
-    if let Some(note) = cell.note {
-        let _ = write!(text, " <sup>{note}</sup>");
+    if !cell.notes.is_empty() {
+        let numbers: Vec<String> = cell.notes.iter().map(usize::to_string).collect();
+        let _ = write!(text, " <sup>{}</sup>", numbers.join(", "));
     }
     text
 }

@@ -165,11 +165,6 @@ pub(super) fn seconds(row: &Row, time: Time) -> (f64, f64) {
     sum
 }
 
-/// Processor seconds.
-pub(super) fn cpu_seconds(row: &Row, time: Time) -> f64 {
-    seconds(row, time).0
-}
-
 /// What was rendered in place of a scene, for a note.
 pub(super) fn stand_in_note(scene: &SceneInfo) -> Option<String> {
     let said = scene.stand_in.as_ref()?;

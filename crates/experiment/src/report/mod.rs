@@ -10,6 +10,7 @@
 //! | `index.html` | everything in one page that loads nothing |
 
 mod chart;
+mod device;
 mod document;
 mod gallery;
 mod html;

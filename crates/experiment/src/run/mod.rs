@@ -1,6 +1,7 @@
 //! Running a plan: renders what is not finished, a line of results for each.
 
 mod comparison;
+mod devices;
 mod machine;
 mod pace;
 mod pictures;
@@ -11,12 +12,15 @@ pub use machine::revision;
 use crate::plan::{Plan, PlannedJob};
 use crate::record::{Record, Row};
 use crate::results::{FILE_NAME, Results, ResultsError, ResultsFile};
+use devices::Devices;
+use lightcuts::gpu::NoDevice;
 use lightcuts::image::ImageError;
 use lightcuts::image::metrics::Metric;
 use lightcuts::{Monitor, SettingsError, Unwatched, WorldError};
 use pace::Pace;
 use rayon::ThreadPoolBuilder;
 use render::Studio;
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -87,6 +91,16 @@ pub enum RunError {
         /// Why not.
         source: Box<WorldError>,
     },
+    /// A device that was there when the plan was made cannot be used.
+    #[error("the device of `{configuration}` cannot be used for the scene `{scene}`: {why}")]
+    Device {
+        /// Name of the configuration.
+        configuration: String,
+        /// Name of the scene.
+        scene: String,
+        /// What is wrong.
+        why: NoDevice,
+    },
     /// Settings are out of range; the plan has checked them.
     #[error(transparent)]
     Settings(#[from] SettingsError),
@@ -96,7 +110,7 @@ pub enum RunError {
     /// Two runs of a job gave two pictures.
     #[error(
         "run {run} of `{job}` gives another picture than run 1, though the same job always gives the same picture; \
-         run 1 is of revision {first_revision}, this is {revision}"
+         run 1 is of revision {first_revision} on {first_device}, this of {revision} on {device}"
     )]
     NotReproducible {
         /// Scene, configuration, ...
@@ -105,8 +119,12 @@ pub enum RunError {
         run: u32,
         /// What rendered run 1.
         first_revision: String,
+        /// Its device.
+        first_device: String,
         /// What renders now.
         revision: &'static str,
+        /// On which device.
+        device: String,
     },
 }
 
@@ -161,25 +179,32 @@ impl<'a> Runner<'a> {
         let todo: Vec<usize> = selection.iter().copied().filter(|&i| self.rows[i].is_none()).collect();
         let mut outcome = Outcome { rendered: 0, skipped: selection.len() - todo.len(), interrupted: false };
         let pool = ThreadPoolBuilder::new().num_threads(plan.threads).build()?;
-        let mut studio = Studio { plan, directory: self.directory.clone(), pool, texts, watch, world: None };
         let mut pace = Pace::of(self.rows.iter().flatten());
-        for (n, &i) in todo.iter().enumerate() {
-            let expected = |jobs: &[usize]| pace.expected(jobs.iter().map(|&i| &plan.jobs[i]));
-            let (this, later) = (expected(&[i]), expected(&todo[n + 1..]));
-            let start = Instant::now();
-            if !watch.cancelled() {
-                watch.job_begins(&plan.jobs[i], &Standing { number: n + 1, of: todo.len(), this, later });
+        for jobs in todo.chunk_by(|&a, &b| plan.jobs[a].scene == plan.jobs[b].scene) {
+            let (directory, world) = (self.directory.clone(), OnceCell::new());
+            let mut studio =
+                Studio { plan, directory, pool: &pool, texts, watch, world: &world, devices: Devices::new(plan) };
+            for &i in jobs {
+                let start = Instant::now();
+                if !watch.cancelled() {
+                    watch.job_begins(&plan.jobs[i], &pace.standing(plan, &todo, outcome.rendered));
+                }
+                let Some(row) = studio.render(i, &self.rows)? else {
+                    return Ok(Outcome { interrupted: true, ..outcome });
+                };
+                pace.add(&row, start.elapsed());
+                self.keep(i, row, watch)?;
+                outcome.rendered += 1;
             }
-            let Some(row) = studio.render(i, &self.rows)? else {
-                outcome.interrupted = true;
-                break;
-            };
-            self.file.append(&Record::Run(Box::new(row.clone())))?;
-            pace.add(&row, start.elapsed());
-            watch.job_ends(&row);
-            self.rows[i] = Some(row);
-            outcome.rendered += 1;
         }
         Ok(outcome)
+    }
+
+    /// Puts the row of a job on the disk.
+    fn keep(&mut self, i: usize, row: Row, watch: &dyn Watch) -> Result<(), RunError> {
+        self.file.append(&Record::Run(Box::new(row.clone())))?;
+        watch.job_ends(&row);
+        self.rows[i] = Some(row);
+        Ok(())
     }
 }

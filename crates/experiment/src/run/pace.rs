@@ -1,6 +1,7 @@
 //! How long jobs take, from those that are finished.
 
-use crate::plan::PlannedJob;
+use super::Standing;
+use crate::plan::{Plan, PlannedJob};
 use crate::record::Row;
 use std::collections::HashMap;
 use std::time::Duration;
@@ -33,8 +34,15 @@ impl Pace {
         }
     }
 
+    /// Where the next of the jobs `todo` stands when `done` of them are finished.
+    pub(super) fn standing(&self, plan: &Plan, todo: &[usize], done: usize) -> Standing {
+        let expected = |jobs: &[usize]| self.expected(jobs.iter().map(|&i| &plan.jobs[i]));
+        let (this, later) = (expected(&todo[done..=done]), expected(&todo[done + 1..]));
+        Standing { number: done + 1, of: todo.len(), this, later }
+    }
+
     /// Time that jobs will probably take; unknown while nothing is finished.
-    pub(super) fn expected<'j>(&self, jobs: impl Iterator<Item = &'j PlannedJob>) -> Option<Duration> {
+    fn expected<'j>(&self, jobs: impl Iterator<Item = &'j PlannedJob>) -> Option<Duration> {
         jobs.map(|job| {
             let alike = alike(&job.scene_name, &job.configuration, job.point.as_ref());
             let (sum, count) = alike.iter().find_map(|alike| self.means.get(alike))?;

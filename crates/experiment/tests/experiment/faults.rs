@@ -41,7 +41,7 @@ fn typos_are_told_with_the_nearest_word() {
         ),
         ("[[section]]\nid = 'x'\ntitle = 'x'\nshows = 'time'", 3, "did you mean `times`?"),
         ("[[configuration]]\nname = 'b'\nreferences = ['A']", 2, "unknown configuration `A`; expected `a`, `b`"),
-        ("[[configuration]]\nname = 'b'\ndevice = 'cuda'", 2, "unknown value `cuda`; expected `cpu`, `gpu`"),
+        ("[[configuration]]\nname = 'b'\ndevice = 'auto'", 2, "`auto` names no device; expected `cpu`, `gpu`"),
         ("[[configuration]]\nname = 'b'\nat = 'last'", 2, "unknown value `last`; expected `every-point`, `last-point`"),
         (
             "[[configuration]]\nname = 'b'\nat = 'last-point'\nreferences = ['a']",

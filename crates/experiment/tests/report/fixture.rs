@@ -75,6 +75,23 @@ impl Results {
         self.header.jobs = self.rows.iter().map(info).collect();
     }
 
+    /// With rows of a GPU for both of its configurations: processor seconds are half of the CPU's for all VPLs, and as many
+    /// with lightcuts.
+    pub(crate) fn with_gpu(mut self, kind: &str, name: &str) -> Self {
+        for (scene, _, factor) in SCENES {
+            for (configuration, first, second) in [("gpu", 0.02, 2.0), ("gpu-lightcuts", 0.05, 8.0)] {
+                self.rows.extend((1..=3).map(|run| {
+                    let mut row = row(scene, configuration, None, run, first * factor, second * factor);
+                    row.device = DeviceInfo { kind: kind.to_owned(), name: name.to_owned(), threads: 0 };
+                    row
+                }));
+            }
+        }
+        self.header.configurations.iter_mut().for_each(|configuration| configuration.absent = None);
+        self.plan_all();
+        self
+    }
+
     /// With a section.
     pub(crate) fn with(mut self, id: &str, content: Content) -> Self {
         let (id, text) = (id.to_owned(), String::new());
@@ -190,7 +207,7 @@ fn header() -> Header {
     let configuration = |name: &str, title: &str, references: &[&str]| ConfigurationInfo {
         name: name.to_owned(),
         title: title.to_owned(),
-        absent: name.starts_with("gpu").then(|| "no GPU device in this version".to_owned()),
+        absent: name.starts_with("gpu").then(|| "there is no graphics adapter".to_owned()),
         references: names(references),
     };
     Header {

@@ -7,6 +7,7 @@ mod agreement;
 mod arithmetic;
 mod browser;
 mod curves;
+mod devices;
 mod fixture;
 mod harm;
 mod times;

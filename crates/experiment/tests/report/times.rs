@@ -40,11 +40,11 @@ fn absent_devices_keep_their_published_figures() {
     let report = Results::new().with_thesis_figures().with("t", times("simple", Some("5.1"))).report();
     let row = report.row("t", &[("configuration", "gpu")]);
     assert_eq!((row["total_cpu_s"].as_str(), row["rows"].as_str()), ("", "0"));
-    assert_eq!(row["absent"], "no GPU device in this version");
+    assert_eq!(row["absent"], "there is no graphics adapter");
     assert_eq!((row["total_ratio"].as_str(), row["published_total_s"].as_str()), ("", "53.353"));
     let markdown = report.text("report.md");
     assert!(markdown.contains("| GPU <sup>1</sup> | absent | 7.891 | - | absent | 45.457 |"), "{markdown}");
-    assert!(markdown.contains("1. Absent: no GPU device in this version."), "{markdown}");
+    assert!(markdown.contains("1. Absent: there is no graphics adapter."), "{markdown}");
 }
 
 #[test]

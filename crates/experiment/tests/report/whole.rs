@@ -42,7 +42,7 @@ fn pictures_are_embedded_once_and_missing_ones_are_told() {
     assert_eq!(report.page().matches("src=\"data:image/png;base64,").count(), 3);
     assert!(report.page().contains("alt=\"Simple, CPU, lightcuts\""));
     assert!(report.page().contains("FLIP against CPU: mean <b>0.0625</b>"));
-    assert!(report.page().contains("Absent: no GPU device in this version."));
+    assert!(report.page().contains("Absent: there is no graphics adapter."));
     fs::remove_file(results.folder().join("images/simple--cpu-lightcuts.png")).unwrap();
     let report = results.report();
     let reason = "images/simple--cpu-lightcuts.png cannot be shown: there is no such file";

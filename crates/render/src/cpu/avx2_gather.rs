@@ -6,9 +6,10 @@ use super::avx2_packet::{Packet, any_hits};
 use super::avx2_trace::{Wide3, dot, load, load3, splat3, store, sub};
 use super::gather::{Candidates, Decisions, Gathered, PacketStack, Receiver};
 use super::tracer::Tracer;
+use crate::light_node::{LANES, LightNode, VplBlock};
 use glam::Vec3;
 use lightcuts_kernel::Rules;
-use lightcuts_kernel::light_tree::{BOUND_MARGIN, LANES, LightNode, VplBlock};
+use lightcuts_kernel::light_tree::BOUND_MARGIN;
 use lightcuts_kernel::ray::ORIGINAL_EPSILON;
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps,

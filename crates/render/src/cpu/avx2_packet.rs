@@ -1,4 +1,4 @@
-//! Eight shadow rays from one point at a time. Twin of `lightcuts_kernel::bvh::any_hit` for each of them, same answers.
+//! Eight shadow rays from one point at a time. Twin of `lightcuts_world::bvh::any_hit` for each of them, same answers.
 //!
 //! Shadow rays to the VPLs of one block start together and end near each other, so they cross much the same boxes; what
 //! depends only on the origin is computed once for all eight.
@@ -9,9 +9,9 @@ use super::avx2_trace::{Wide3, WideRay, dot, lanes, splat3, store};
 use super::gather::PacketStack;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
-use lightcuts_kernel::bvh::{BvhNode, ChildRef, Geometry, SLAB_SLACK};
-use lightcuts_kernel::intersect::{LANES, Sphere, Square, min_determinant};
-use lightcuts_kernel::ray::{ORIGINAL_EPSILON, Ray};
+use lightcuts_kernel::intersect::{Sphere, Square, min_determinant};
+use lightcuts_kernel::ray::{ORIGINAL_EPSILON, Ray, SLAB_SLACK};
+use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NEQ_OQ, _mm256_add_ps, _mm256_and_ps,
     _mm256_andnot_ps, _mm256_blendv_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,

@@ -1,11 +1,11 @@
-//! Traversal with AVX2: eight boxes or eight triangles at a time. Twin of `lightcuts_kernel::bvh`, same hits.
+//! Traversal with AVX2: eight boxes or eight triangles at a time. Twin of `lightcuts_world::bvh`, same hits.
 
 #![allow(unsafe_code)]
 
 use lightcuts_kernel::Rules;
-use lightcuts_kernel::bvh::{BvhNode, ChildRef, Geometry, SLAB_SLACK, STACK_SIZE};
-use lightcuts_kernel::intersect::{LANES, TriangleBlock, intersect_sphere, intersect_square, min_determinant};
-use lightcuts_kernel::ray::{Hit, Ray, safe_reciprocal};
+use lightcuts_kernel::intersect::{intersect_sphere, intersect_square, min_determinant};
+use lightcuts_kernel::ray::{Hit, Ray, SLAB_SLACK, safe_reciprocal};
+use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NLT_UQ, _mm256_add_ps, _mm256_and_ps,
     _mm256_andnot_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,

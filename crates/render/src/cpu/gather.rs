@@ -1,10 +1,12 @@
 //! Which VPLs light a point, and what they add: the plain versions and the choice between them and SIMD.
 
 use super::Tracer;
-use crate::light_tree::LightTree;
+use crate::light_node::{LANES, LightNode, VplBlock};
+use crate::light_tree::{LightTree, Nodes, PackedTree};
 use crate::stats::TreeVisits;
 use glam::Vec3;
-use lightcuts_kernel::light_tree::{Decision, LANES, LightNode, VplBlock, decide, is_relevant};
+use lightcuts_kernel::light_tree::{Decision, decide, is_relevant};
+use lightcuts_kernel::packed_tree::unpack_cluster;
 use lightcuts_kernel::phong::{phong_vpl, vpl_incidence};
 use lightcuts_kernel::ray::shadow_ray;
 
@@ -59,16 +61,31 @@ pub(crate) fn select(
     threshold: f32,
     candidates: &mut Vec<Candidates>,
 ) -> TreeVisits {
+    match &tree.nodes {
+        Nodes::Wide(nodes) => select_wide(tree, nodes, avx2, point, threshold, candidates),
+        Nodes::Packed(packed) => select_packed(tree, packed, point, threshold, candidates),
+    }
+}
+
+/// Walks down nodes of eight clusters.
+fn select_wide(
+    tree: &LightTree,
+    nodes: &[LightNode],
+    avx2: bool,
+    point: Vec3,
+    threshold: f32,
+    candidates: &mut Vec<Candidates>,
+) -> TreeVisits {
     let mut visits = TreeVisits::default();
-    if tree.nodes.is_empty() {
+    if nodes.is_empty() {
         return visits;
     }
     // Nodes on the way down, each with what is left to do there.
     let mut stack = [(0_u32, Decisions::default()); MAX_LEVELS];
     let mut size = 0;
-    let (mut index, mut left) = (0, decide_all(&tree.nodes[0], avx2, point, threshold, &mut visits));
+    let (mut index, mut left) = (0, decide_all(&nodes[0], avx2, point, threshold, &mut visits));
     loop {
-        let node = &tree.nodes[index as usize];
+        let node = &nodes[index as usize];
         if node.node[0] == 0 {
             take_blocks(node, left, candidates, &mut visits);
             left = Decisions::default();
@@ -93,7 +110,7 @@ pub(crate) fn select(
         if child != 0 {
             stack[size] = (index, Decisions { accept: left.accept & pending, descend: left.descend & pending });
             size += 1;
-            (index, left) = (child, decide_all(&tree.nodes[child as usize], avx2, point, threshold, &mut visits));
+            (index, left) = (child, decide_all(&nodes[child as usize], avx2, point, threshold, &mut visits));
         } else if size > 0 {
             size -= 1;
             (index, left) = stack[size];
@@ -101,6 +118,39 @@ pub(crate) fn select(
             return visits;
         }
     }
+}
+
+/// Walks a binary tree in heap order without a stack: what comes after a subtree follows from its root's number. Twin of
+/// what GPUs do.
+fn select_packed(
+    tree: &LightTree,
+    packed: &PackedTree,
+    point: Vec3,
+    threshold: f32,
+    candidates: &mut Vec<Candidates>,
+) -> TreeVisits {
+    let mut visits = TreeVisits::default();
+    let count = tree.blocks.len() as u32;
+    // A node with the first of its blocks and their number, blocks past the end included.
+    let (mut index, mut first, mut span) = (1_u32, 0, packed.leaves() as u32);
+    while first < count {
+        visits.nodes += 1;
+        let decision = decide(&unpack_cluster(&packed.nodes[index as usize]), point, threshold);
+        if decision == Decision::Descend && span > 1 {
+            (index, span) = (2 * index, span / 2);
+            continue;
+        }
+        let certain = decision == Decision::Accept;
+        if decision != Decision::Reject {
+            let blocks = first..(first + span).min(count);
+            candidates.extend(blocks.map(|block| Candidates { block, lanes: tree.lanes(block), certain }));
+            visits.lights += if certain { 0 } else { u64::from(tree.lanes(first).count_ones()) };
+        }
+        first += span;
+        let climbed = (index + 1).trailing_zeros();
+        (index, span) = ((index + 1) >> climbed, span << climbed);
+    }
+    visits
 }
 
 /// Takes the accepted and the undecided blocks of a node that has only blocks, without a branch per block: which are

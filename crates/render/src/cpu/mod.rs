@@ -9,9 +9,11 @@ mod avx2_gather;
 mod avx2_packet;
 #[cfg(target_arch = "x86_64")]
 mod avx2_trace;
+mod device;
 mod gather;
 mod tracer;
 
+pub use device::{CpuDevice, processor_name};
 #[cfg(test)]
 pub(crate) use gather::relevant_lanes;
 pub(crate) use gather::{Candidates, PacketStack, Receiver, evaluate, select, select_exhaustively};

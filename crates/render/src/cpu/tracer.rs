@@ -2,8 +2,8 @@
 
 use super::Simd;
 use lightcuts_kernel::Rules;
-use lightcuts_kernel::bvh::{Geometry, any_hit, closest_hit};
 use lightcuts_kernel::ray::{Hit, Ray};
+use lightcuts_world::bvh::{Geometry, any_hit, closest_hit};
 
 /// Traces rays through a geometry by the best means that the machine has.
 #[derive(Debug, Clone, Copy)]
@@ -46,14 +46,14 @@ impl<'a> Tracer<'a> {
 mod tests {
     use super::*;
     use crate::cpu::{Candidates, PacketStack, Receiver, evaluate};
-    use crate::light_tree::LightTree;
     use crate::light_tree::tests::scattered;
+    use crate::light_tree::{LightTree, TreeLayout};
     use glam::Vec3;
     use lightcuts_import::{ImportOptions, load};
-    use lightcuts_kernel::bvh::{ChildRef, intersect_leaf};
     use lightcuts_kernel::rng::random4;
     use lightcuts_testkit::project_root;
     use lightcuts_world::World;
+    use lightcuts_world::bvh::{ChildRef, intersect_leaf};
 
     const RULES: [Rules; 2] = [Rules::Original, Rules::Repaired];
 
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn gathering_is_bit_equal_with_and_without_simd() {
-        let tree = LightTree::build(&scattered(203));
+        let tree = LightTree::build(&scattered(203), TreeLayout::Wide);
         let all: Vec<Candidates> = tree.every_block(true).chain(tree.every_block(false)).collect();
         for scene in ["thesis/simple.txt", "thesis/ship.txt", "gallery/cubes.txt"] {
             let world = world(scene);

@@ -2,6 +2,7 @@
 
 mod closed_form;
 mod invariants;
+mod stations;
 mod thesis;
 
 use lightcuts_import::{ImportOptions, load};

@@ -104,8 +104,13 @@ fn content(table: &Table, cell: &Cell, decimals: usize) -> Markup {
     html! {
         span.value { (shown(&cell.text)) }
         (padding(&cell.text, decimals))
-        @if let Some(note) = cell.note {
-            sup { a href={ "#" (table.id) ":note-" (note) } { (note) } }
+        @if !cell.notes.is_empty() {
+            sup {
+                @for (i, note) in cell.notes.iter().enumerate() {
+                    @if i > 0 { ", " }
+                    a href={ "#" (table.id) ":note-" (note) } { (note) }
+                }
+            }
         }
         @if let Some(detail) = &cell.detail {
             small { (detail.replace('-', "\u{2212}")) }

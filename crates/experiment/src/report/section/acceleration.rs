@@ -1,8 +1,9 @@
 //! How much faster one configuration is than another in every scene, beside published figures.
 
-use crate::layout::AccelerationRow;
-use crate::record::SceneInfo;
+use crate::layout::{AccelerationRow, Time};
+use crate::record::{Row, SceneInfo};
 use crate::report::chart::bars::{Bar, BarChart, Group};
+use crate::report::device::{self, told_seconds};
 use crate::report::document::{Block, Cell, Chart, Column, Csv, Kind, Notes, Notice, Table, field};
 use crate::report::measured::{Found, Measured, seconds, stand_in_note};
 use crate::report::number::{as_printed, fixed};
@@ -21,7 +22,7 @@ pub(super) struct Request<'a> {
 /// An acceleration in one scene.
 #[derive(Default)]
 struct Figure {
-    /// Of processor seconds, in percent.
+    /// Of the seconds that are told of each, in percent.
     ours: Option<f64>,
     /// Of elapsed seconds, in percent.
     elapsed: Option<f64>,
@@ -30,6 +31,8 @@ struct Figure {
     word: &'static str,
     /// Why there is none.
     reason: Option<String>,
+    /// What GPU it is of, if any.
+    device: Option<String>,
 }
 
 /// The table and its chart.
@@ -72,10 +75,10 @@ fn figure(
             (figure.word, figure.reason) = (found.word(), Some(reason));
         }
     }
-    let mean =
-        |found: &Found<'_>, time: fn((f64, f64)) -> f64| Some(found.spread(|r| time(seconds(r, row.time)))?.mean);
+    let mean = |found: &Found<'_>, time: fn(&Row, Time) -> f64| Some(found.spread(|r| time(r, row.time))?.mean);
     let of_both = |time| percent(mean(&found[0], time)?, mean(&found[1], time)?);
-    (figure.ours, figure.elapsed) = (of_both(|(cpu_s, _)| cpu_s), of_both(|(_, elapsed_s)| elapsed_s));
+    (figure.ours, figure.elapsed) = (of_both(told_seconds), of_both(|row, time| seconds(row, time).1));
+    figure.device = found.iter().find_map(device::note).filter(|_| figure.ours.is_some());
     Ok(figure)
 }
 
@@ -99,18 +102,27 @@ fn table(measured: &Measured<'_>, request: &Request<'_>, scenes: &[&SceneInfo], 
         rows.push(cells);
     }
     let csv = csv(request, scenes, figures);
-    Table { id: request.id.to_owned(), caption: caption(measured, request), columns, names: 1, rows, notes, csv }
+    Table {
+        id: request.id.to_owned(),
+        caption: caption(measured, request, figures),
+        columns,
+        names: 1,
+        rows,
+        notes,
+        csv,
+    }
 }
 
 fn cells_of(figure: &Figure, scene: &SceneInfo, with_published: bool, notes: &mut Notes) -> Vec<Cell> {
     let stand_in = stand_in_note(scene);
     let published_kind = if stand_in.is_none() { Kind::Published } else { Kind::Faint };
     let note = figure.reason.clone().or(stand_in).map(|text| notes.mark(text));
+    let device = figure.device.as_ref().map(|text| notes.mark(text));
     let ours = match figure.ours {
         Some(percent) => Cell::number(fixed(percent, 1)),
         None => Cell::new(Kind::Faint, figure.word),
     };
-    let mut cells = vec![ours.with_note(note)];
+    let mut cells = vec![ours.with_note(note).with_note(device)];
     if with_published {
         let text = figure.published.map(as_printed);
         cells.push(text.map_or(Cell::none(), |text| Cell::new(published_kind, text)));
@@ -118,9 +130,11 @@ fn cells_of(figure: &Figure, scene: &SceneInfo, with_published: bool, notes: &mu
     cells
 }
 
-fn caption(measured: &Measured<'_>, request: &Request<'_>) -> String {
+fn caption(measured: &Measured<'_>, request: &Request<'_>, figures: &[Vec<Figure>]) -> String {
+    let has_gpu = figures.iter().flatten().any(|figure| figure.device.is_some());
+    let of_gpus = if has_gpu { ", of GPUs elapsed seconds" } else { "" };
     let mut text =
-        "Acceleration (slow / fast - 1) * 100 % of the mean processor seconds; below 0 is slower.".to_owned();
+        format!("Acceleration (slow / fast - 1) * 100 % of the mean processor seconds{of_gpus}; below 0 is slower.");
     if !measured.header.points.is_empty() {
         text += " In each scene at the last point of the sweep.";
     }

@@ -3,8 +3,9 @@
 use crate::layout::Time;
 use crate::published::{AVERAGE, PublishedTime};
 use crate::record::{ConfigurationInfo, Row, SceneInfo};
+use crate::report::device::{self, told_seconds};
 use crate::report::document::{Block, Cell, Column, Csv, Kind, Notes, Notice, Table, field};
-use crate::report::measured::{Found, Measured, Spread, cpu_seconds, seconds, stand_in_note};
+use crate::report::measured::{Found, Measured, Spread, seconds, stand_in_note};
 use crate::report::number::{as_printed, count, fixed, integer, significant};
 use std::fmt::Write as _;
 
@@ -37,7 +38,7 @@ const TIMES: [Quantity; 3] = [
     (Time::Total, "Total, s", |published| published.total_s),
 ];
 
-const CSV_HEAD: [&str; 29] = [
+const CSV_HEAD: [&str; 30] = [
     "scene",
     "configuration",
     "point",
@@ -45,6 +46,7 @@ const CSV_HEAD: [&str; 29] = [
     "rows",
     "stand_in",
     "absent",
+    "device",
     "first_pass_cpu_s",
     "first_pass_cpu_least_s",
     "first_pass_cpu_greatest_s",
@@ -78,7 +80,7 @@ pub(super) fn blocks(measured: &Measured<'_>, request: &Request<'_>) -> Vec<Bloc
     csv.rows = lines.iter().map(|line| csv_row(line, request)).collect();
     let table = Table {
         id: request.id.to_owned(),
-        caption: caption(measured, request),
+        caption: caption(measured, request, &lines),
         columns: columns(request.table.is_some()),
         names: 1,
         rows,
@@ -89,14 +91,16 @@ pub(super) fn blocks(measured: &Measured<'_>, request: &Request<'_>) -> Vec<Bloc
     stand_in.into_iter().chain([Block::Table(table)]).collect()
 }
 
-fn caption(measured: &Measured<'_>, request: &Request<'_>) -> String {
+fn caption(measured: &Measured<'_>, request: &Request<'_>, lines: &[Line<'_>]) -> String {
     let renders = measured.header.runs as usize * measured.header.seeds.len();
     let what = match (request.every_run, renders) {
         (true, _) => "every run",
         (false, 0 | 1) => "one run",
         (false, _) => "mean over the runs, below it the least and the greatest",
     };
-    let mut text = format!("{}: processor seconds over all threads, {what}.", request.scene.title);
+    let has_gpu = lines.iter().any(|line| device::note(&line.found).is_some());
+    let of_gpus = if has_gpu { ", of GPUs elapsed seconds" } else { "" };
+    let mut text = format!("{}: processor seconds over all threads{of_gpus}, {what}.", request.scene.title);
     if let Some(table) = request.table {
         let source = &measured.header.published.source;
         let _ = write!(text, " Beside them the published figures ({source}, {table}); the ratio is published / ours.");
@@ -183,12 +187,13 @@ fn published<'a>(
 fn row(line: &Line<'_>, request: &Request<'_>, notes: &mut Notes) -> Vec<Cell> {
     let comparable = request.scene.stand_in.is_none();
     let reason = line.found.note().or_else(|| stand_in_note(request.scene));
-    let mut cells = vec![Cell::name(&line.title).with_note(reason.map(|reason| notes.mark(reason)))];
+    let name = Cell::name(&line.title).with_note(reason.map(|reason| notes.mark(reason)));
+    let mut cells = vec![name.with_note(device::mark(notes, &line.found))];
     let published_kind = if comparable { Kind::Published } else { Kind::Faint };
     let of_others = |value: Option<String>| value.map_or(Cell::none(), |text| Cell::new(published_kind, text));
     let has_published = request.table.is_some();
     for (time, _, figure) in TIMES {
-        let ours = line.found.spread(|row| cpu_seconds(row, time));
+        let ours = line.found.spread(|row| told_seconds(row, time));
         cells.push(own_cell(ours, significant, &line.found));
         if has_published {
             let figure = line.published.map(figure);
@@ -235,14 +240,16 @@ fn csv_row(line: &Line<'_>, request: &Request<'_>) -> Vec<String> {
         line.found.rows().len().to_string(),
         stand_in.to_string(),
         absent.to_owned(),
+        line.found.rows().first().map_or(String::new(), |row| row.device.kind.clone()),
     ];
     let mut ratios = Vec::new();
     for (time, _, figure) in TIMES {
-        let cpu = line.found.spread(|row| cpu_seconds(row, time));
+        let cpu = line.found.spread(|row| seconds(row, time).0);
+        let told = line.found.spread(|row| told_seconds(row, time));
         let elapsed = line.found.spread(|row| seconds(row, time).1);
         fields.extend([cpu.map(|spread| spread.mean), cpu.map(|spread| spread.least)].map(field));
         fields.extend([cpu.map(|spread| spread.greatest), elapsed.map(|spread| spread.mean)].map(field));
-        ratios.push(field(ratio(line.published.map(figure), cpu).filter(|_| !stand_in)));
+        ratios.push(field(ratio(line.published.map(figure), told).filter(|_| !stand_in)));
     }
     fields.extend([light_ratio(line), vpl_count(line)].map(|spread| field(spread.map(|spread| spread.mean))));
     fields.extend(TIMES.map(|(_, _, figure)| field(line.published.map(figure))));

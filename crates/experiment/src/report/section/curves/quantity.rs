@@ -2,6 +2,7 @@
 
 use crate::layout::Quantity;
 use crate::record::{ConfigurationInfo, Row};
+use crate::report::device::told_pass_seconds;
 use crate::report::measured::Spread;
 use crate::report::number::significant;
 use crate::report::section::{self, agreement};
@@ -92,8 +93,13 @@ impl Kind {
     }
 }
 
-/// Processor time of the light tree and the second pass, in seconds.
+/// Time of the light tree and the second pass, in seconds: processor time, of GPUs elapsed time.
 fn gathering_s(row: &Row) -> f64 {
     let shading = [Stage::LightTree.name(), Stage::SecondPass.name()];
-    row.stats.passes.iter().filter(|pass| shading.contains(&pass.name.as_ref())).map(|pass| pass.cpu_s).sum()
+    row.stats
+        .passes
+        .iter()
+        .filter(|pass| shading.contains(&pass.name.as_ref()))
+        .map(|pass| told_pass_seconds(row, pass))
+        .sum()
 }

@@ -1,6 +1,7 @@
 //! The values of curves as a table.
 
 use super::{Kind, Request, Sample, Series};
+use crate::report::device;
 use crate::report::document::{Cell, Column, Csv, Kind as CellKind, Notes, Table, field};
 use crate::report::number::{count, significant};
 
@@ -86,7 +87,9 @@ fn value_cell(series: &Series<'_>, sample: &Sample<'_>, quantity: Kind, notes: &
     });
     let note = reason.map(|reason| notes.mark(reason));
     let none = || Cell::new(CellKind::Faint, sample.found.word());
-    sample.value.map_or_else(none, |(value, spread)| Cell::within(value, spread, significant)).with_note(note)
+    let device = if quantity.is_time() { device::mark(notes, &sample.found) } else { None };
+    let cell = sample.value.map_or_else(none, |(value, spread)| Cell::within(value, spread, significant));
+    cell.with_note(note).with_note(device)
 }
 
 fn csv_row(request: &Request<'_>, series: &Series<'_>, sample: &Sample<'_>) -> Vec<String> {

@@ -1,20 +1,52 @@
-//! The 8-wide bounding volume hierarchy: node layout and plain traversal.
+//! The CPU's bounding volume hierarchy, eight wide: node layout and plain traversal.
 //!
-//! The CPU device replaces [`closest_hit`] and [`any_hit`] by SIMD versions that are tested against these.
+//! The CPU device replaces [`closest_hit`] and [`any_hit`] by SIMD versions that are tested against these. Other devices
+//! traverse the compressed hierarchy of [`crate::CompressedHierarchy`].
 
-use crate::Rules;
-use crate::intersect::{
-    LANES, Sphere, Square, TriangleBlock, intersect_sphere, intersect_square, intersect_triangle, min_determinant,
-};
-use crate::ray::{Hit, Ray, safe_reciprocal};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
+use lightcuts_kernel::Rules;
+use lightcuts_kernel::intersect::{
+    Sphere, Square, Triangle, intersect_sphere, intersect_square, intersect_triangle, min_determinant,
+};
+use lightcuts_kernel::ray::{Hit, NONE, Ray, SLAB_SLACK, safe_reciprocal};
+
+/// Children of a node and triangles of a block; also the width of the SIMD registers that test them.
+pub const LANES: usize = 8;
 
 /// Most entries that a traversal can have to remember: 7 per level of the deepest tree that the builder makes.
 pub const STACK_SIZE: usize = 512;
 
-/// Relative slack of slab tests, above twice their rounding error (Ize 2013, "Robust BVH Ray Traversal").
-pub const SLAB_SLACK: f32 = 1.0 + 4e-7;
+/// Eight triangles, component by component: corner, two edges, primitive. Empty lanes have zero edges, which no ray hits.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct TriangleBlock {
+    /// First corners: x of all lanes, y of all lanes, z of all lanes.
+    pub corner: [[f32; LANES]; 3],
+    /// Second corner minus first.
+    pub edge1: [[f32; LANES]; 3],
+    /// Third corner minus first.
+    pub edge2: [[f32; LANES]; 3],
+    /// Primitive of each lane, or [`NONE`].
+    pub primitive: [u32; LANES],
+}
+
+impl TriangleBlock {
+    /// A block without triangles.
+    pub const EMPTY: Self = Self {
+        corner: [[0.0; LANES]; 3],
+        edge1: [[0.0; LANES]; 3],
+        edge2: [[0.0; LANES]; 3],
+        primitive: [NONE; LANES],
+    };
+
+    /// The triangle of one lane.
+    pub fn triangle(&self, lane: usize) -> Triangle {
+        let vector = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
+        let (corner, edge1, edge2) = (vector(&self.corner), vector(&self.edge1), vector(&self.edge2));
+        Triangle { corner, primitive: self.primitive[lane], edge1, padding0: 0, edge2, padding1: 0 }
+    }
+}
 
 /// Eight children's boxes, component by component, rounded outwards. Empty children have inverted boxes.
 #[repr(C)]
@@ -107,7 +139,7 @@ pub fn intersect_leaf(geometry: &Geometry<'_>, leaf: ChildRef, ray: &Ray, rules:
         ChildRef::Triangles(i) => {
             let limit = min_determinant(rules);
             (0..LANES)
-                .filter_map(|lane| intersect_triangle(&geometry.triangles[i as usize], lane, ray, limit))
+                .filter_map(|lane| intersect_triangle(&geometry.triangles[i as usize].triangle(lane), ray, limit))
                 .for_each(report);
         }
         ChildRef::Sphere(i) => intersect_sphere(&geometry.spheres[i as usize], ray, rules).into_iter().for_each(report),

@@ -1,0 +1,247 @@
+//! The devices of a render: the processor, and adapters where stations want some.
+//!
+//! Who asks for what is settled in two steps: an [`Assignment`] needs no world, so that a name which fits nothing is told
+//! before a scene is read; a [`Fleet`] opens what is assigned.
+
+use crate::adapter::{AdapterSummary, DeviceChoice, adapters, choose};
+use crate::device::{GpuDevice, GpuOptions};
+use lightcuts_render::device::{CpuDevice, Device, DeviceFault};
+use lightcuts_render::{Simd, Stations};
+use lightcuts_world::World;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Files of which Linux has at least one if it has a graphics card: those of its own drivers, NVIDIA's, Tegra's, Windows'
+/// below it, ARM's and Qualcomm's.
+const CARD_FILES: [&str; 6] =
+    ["/dev/dri", "/dev/nvidiactl", "/dev/nvhost-gpu", "/dev/dxg", "/dev/mali0", "/dev/kgsl-3d0"];
+
+/// One of something for each station; see [`Stations`].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct PerStation<T> {
+    /// The first pass, which places VPLs.
+    pub place: T,
+    /// Photons for caustics.
+    pub photons: T,
+    /// The light tree.
+    pub tree: T,
+    /// The second pass.
+    pub gather: T,
+    /// Bloom.
+    pub develop: T,
+}
+
+impl<T> PerStation<T> {
+    /// The same for every station.
+    pub fn all(value: &T) -> Self
+    where
+        T: Clone,
+    {
+        let again = || value.clone();
+        Self { place: again(), photons: again(), tree: again(), gather: again(), develop: again() }
+    }
+
+    fn each(&self) -> [&T; 5] {
+        [&self.place, &self.photons, &self.tree, &self.gather, &self.develop]
+    }
+
+    fn try_map<U, E>(&self, mut f: impl FnMut(&T) -> Result<U, E>) -> Result<PerStation<U>, E> {
+        Ok(PerStation {
+            place: f(&self.place)?,
+            photons: f(&self.photons)?,
+            tree: f(&self.tree)?,
+            gather: f(&self.gather)?,
+            develop: f(&self.develop)?,
+        })
+    }
+}
+
+/// The adapters among which something of what is wanted may be. Drivers are not loaded in vain, which would take memory and
+/// a good part of a second: not where the processor alone is wanted, nor to find a card where there is none.
+pub fn adapters_for(wanted: &PerStation<DeviceChoice>) -> Vec<AdapterSummary> {
+    let needs_drivers = |choice: &&DeviceChoice| match choice {
+        DeviceChoice::Cpu => false,
+        DeviceChoice::Auto => may_have_a_card(),
+        DeviceChoice::Gpu | DeviceChoice::Named(_) => true,
+    };
+    if wanted.each().iter().any(needs_drivers) { adapters() } else { Vec::new() }
+}
+
+/// Whether this machine may have a graphics card, as far as that is known without its driver.
+fn may_have_a_card() -> bool {
+    !cfg!(target_os = "linux") || CARD_FILES.iter().any(|file| Path::new(file).exists())
+}
+
+/// A device that was asked for cannot be had; the text says why.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct NoDevice(pub String);
+
+impl From<DeviceFault> for NoDevice {
+    fn from(fault: DeviceFault) -> Self {
+        match fault {
+            // It says by itself what failed.
+            DeviceFault::Failed(why) => Self(why),
+            fault => Self(fault.to_string()),
+        }
+    }
+}
+
+/// Which adapter each station takes, if any.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Assignment(PerStation<Seat>);
+
+/// What a station asked for, and the place in the list of adapters that this is; the processor has none.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Seat {
+    choice: DeviceChoice,
+    adapter: Option<usize>,
+}
+
+impl Assignment {
+    /// Finds what is wanted among the adapters, of which there are those of [`adapters_for`]
+    /// at least. Fails if something was asked for that is not there.
+    pub fn new(wanted: &PerStation<DeviceChoice>, adapters: &[AdapterSummary]) -> Result<Self, NoDevice> {
+        let seat = |choice: &DeviceChoice| {
+            let adapter = choose(choice, adapters)?;
+            Ok::<_, NoDevice>(Seat { choice: choice.clone(), adapter })
+        };
+        wanted.try_map(seat).map(Self)
+    }
+
+    /// Whether any station takes an adapter.
+    pub fn takes_adapters(&self) -> bool {
+        self.0.each().iter().any(|seat| seat.adapter.is_some())
+    }
+}
+
+/// Open devices for one world.
+pub struct Fleet<'w> {
+    cpu: CpuDevice<'w>,
+    /// By their place in the list of adapters; those that did not open, with the reason.
+    gpus: BTreeMap<usize, Result<GpuDevice<'w>, NoDevice>>,
+    adapters: PerStation<Option<usize>>,
+}
+
+impl<'w> Fleet<'w> {
+    /// Opens what is assigned, each adapter once. An adapter that does not open is an error where it was asked for; where
+    /// the choice was free the processor takes its place, and `note` is told.
+    pub fn open(
+        assignment: &Assignment,
+        world: &'w World,
+        simd: Simd,
+        options: &GpuOptions,
+        note: &dyn Fn(&str),
+    ) -> Result<Self, NoDevice> {
+        let mut gpus = BTreeMap::new();
+        let adapters = assignment.0.try_map(|seat| {
+            let Some(place) = seat.adapter else { return Ok(None) };
+            let is_first = !gpus.contains_key(&place);
+            match gpus.entry(place).or_insert_with(|| open(&seat.choice, world, options)) {
+                Ok(_) => Ok(Some(place)),
+                Err(why) if seat.choice != DeviceChoice::Auto => Err(why.clone()),
+                Err(why) => {
+                    if is_first {
+                        note(&format!("the GPU cannot be used, so the CPU renders: {why}"));
+                    }
+                    Ok(None)
+                }
+            }
+        })?;
+        Ok(Self { cpu: CpuDevice::new(world, simd), gpus, adapters })
+    }
+
+    /// Which device runs which station.
+    pub fn stations(&self) -> Stations<'_> {
+        let at = |adapter: Option<usize>| self.at(adapter);
+        let PerStation { place, photons, tree, gather, develop } = self.adapters;
+        Stations { place: at(place), photons: at(photons), tree: at(tree), gather: at(gather), develop: at(develop) }
+    }
+
+    /// The GPUs that are open, the best first.
+    pub fn gpus(&self) -> impl Iterator<Item = &GpuDevice<'w>> {
+        self.gpus.values().filter_map(|gpu| gpu.as_ref().ok())
+    }
+
+    fn at(&self, adapter: Option<usize>) -> &dyn Device {
+        match adapter.and_then(|place| self.gpus.get(&place)) {
+            Some(Ok(gpu)) => gpu,
+            _ => &self.cpu,
+        }
+    }
+}
+
+fn open<'w>(choice: &DeviceChoice, world: &'w World, options: &GpuOptions) -> Result<GpuDevice<'w>, NoDevice> {
+    let opened = GpuDevice::open(choice, world, options)?;
+    opened.ok_or_else(|| NoDevice("the adapter went away".to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lightcuts_render::device::DeviceKind;
+    use lightcuts_scene::SceneDesc;
+    use std::cell::RefCell;
+
+    fn adapter(name: &str, kind: DeviceKind) -> AdapterSummary {
+        AdapterSummary {
+            name: name.to_owned(),
+            kind,
+            api: "Vulkan".to_owned(),
+            driver: String::new(),
+            max_binding_bytes: 1 << 27,
+            max_buffer_bytes: 1 << 28,
+            max_storage_buffers: 10,
+            max_invocations: 256,
+            subgroup_sizes: [8, 8],
+            has_timestamps: true,
+            unsuited: None,
+        }
+    }
+
+    #[test]
+    fn each_station_takes_the_adapter_that_it_asked_for() {
+        let adapters = [adapter("Card", DeviceKind::Gpu), adapter("llvmpipe", DeviceKind::SoftwareGpu)];
+        let mut wanted = PerStation::all(&DeviceChoice::Auto);
+        wanted.tree = DeviceChoice::Cpu;
+        wanted.gather = DeviceChoice::Named("LLVM".to_owned());
+        let Assignment(seats) = Assignment::new(&wanted, &adapters).unwrap();
+        assert_eq!(seats.each().map(|seat| seat.adapter), [Some(0), Some(0), None, Some(1), Some(0)]);
+        assert!(!Assignment::new(&PerStation::all(&DeviceChoice::Auto), &adapters[1..]).unwrap().takes_adapters());
+    }
+
+    #[test]
+    fn what_is_not_there_is_named() {
+        let wanted = PerStation::all(&DeviceChoice::Named("Card".to_owned()));
+        let why = Assignment::new(&wanted, &[]).unwrap_err().to_string();
+        assert!(why.starts_with("there is no device `Card`"), "{why}");
+    }
+
+    /// The adapter is on the list and not in the machine, as if it was pulled out in between.
+    #[test]
+    fn an_adapter_that_does_not_open_is_an_error_only_where_it_was_asked_for() {
+        let world = World::new(&SceneDesc::default()).unwrap();
+        let told = RefCell::new(Vec::new());
+        let note = |text: &str| told.borrow_mut().push(text.to_owned());
+        let open = |choice: DeviceChoice| {
+            let seat = Seat { choice, adapter: Some(0) };
+            Fleet::open(&Assignment(PerStation::all(&seat)), &world, Simd::Auto, &GpuOptions::default(), &note)
+        };
+        assert!(open(DeviceChoice::Named("no such card".to_owned())).is_err());
+        assert!(told.borrow().is_empty());
+        let fleet = open(DeviceChoice::Auto).unwrap();
+        // A machine with a card opens it. On others the CPU renders, and that is told once.
+        assert_eq!(fleet.gpus().count() + told.borrow().len(), 1);
+        assert_eq!(fleet.stations().gather.info().kind == DeviceKind::Cpu, fleet.gpus().count() == 0);
+    }
+
+    #[test]
+    fn the_processor_needs_no_adapter() {
+        assert_eq!(adapters_for(&PerStation::all(&DeviceChoice::Cpu)), []);
+        let world = World::new(&SceneDesc::default()).unwrap();
+        let assignment = Assignment::new(&PerStation::all(&DeviceChoice::Cpu), &[]).unwrap();
+        let fleet = Fleet::open(&assignment, &world, Simd::Auto, &GpuOptions::default(), &|_| ()).unwrap();
+        assert_eq!(fleet.gpus().count(), 0);
+        assert_eq!(fleet.stations().gather.info().kind, DeviceKind::Cpu);
+    }
+}

@@ -1,0 +1,105 @@
+//! The CPU as a device: it never faults, so that it can take over from any other.
+
+use super::{Simd, Tracer};
+use crate::device::{Device, DeviceFault, DeviceInfo, DeviceKind, Pass, TileResult, View};
+use crate::film::Tile;
+use crate::light_tree::{LightTree, TreeLayout};
+use crate::monitor::Monitor;
+use crate::photon_map::PhotonMap;
+use crate::settings::Caustics;
+use lightcuts_image::{Image, ToneMapping};
+use lightcuts_kernel::light::Vpl;
+use lightcuts_world::World;
+use rayon::prelude::*;
+use std::sync::OnceLock;
+
+/// Tiles that are rendered between two looks at the monitor.
+const BATCH: usize = 64;
+
+/// The processor, on the threads of the current rayon pool.
+#[derive(Debug, Clone, Copy)]
+pub struct CpuDevice<'a> {
+    world: &'a World,
+    simd: Simd,
+}
+
+impl<'a> CpuDevice<'a> {
+    /// The processor, made ready for passes over a world.
+    pub fn new(world: &'a World, simd: Simd) -> Self {
+        Self { world, simd }
+    }
+
+    fn tracer(&self, view: &View<'_>) -> Tracer<'a> {
+        Tracer::new(self.world.geometry(), view.rules, self.simd)
+    }
+}
+
+impl Device for CpuDevice<'_> {
+    fn info(&self) -> DeviceInfo {
+        DeviceInfo { kind: DeviceKind::Cpu, name: processor_name() }
+    }
+
+    fn batch(&self) -> usize {
+        BATCH
+    }
+
+    fn render_tiles(
+        &self,
+        pass: &Pass<'_>,
+        tiles: &[Tile],
+        monitor: &dyn Monitor,
+    ) -> Result<Vec<Option<TileResult>>, DeviceFault> {
+        let tracer = self.tracer(&pass.view);
+        let results = tiles
+            .par_iter()
+            .map(|tile| (!monitor.cancelled()).then(|| pass.render_tile(tracer, tile)))
+            .inspect(|_| monitor.advance())
+            .collect();
+        Ok(results)
+    }
+
+    /// None: rows are traced one after the other.
+    fn original_shifts(&self, _view: &View<'_>) -> Result<Option<Vec<[f32; 2]>>, DeviceFault> {
+        Ok(None)
+    }
+
+    fn shoot_photons(
+        &self,
+        view: &View<'_>,
+        settings: &Caustics,
+        monitor: &dyn Monitor,
+    ) -> Result<(PhotonMap, u64), DeviceFault> {
+        Ok(PhotonMap::shoot(self.world, &self.tracer(view), settings, view.max_depth, monitor))
+    }
+
+    fn preferred_layout(&self) -> TreeLayout {
+        TreeLayout::Wide
+    }
+
+    fn build_tree(&self, vpls: &[Vpl], wanted: TreeLayout) -> Result<LightTree, DeviceFault> {
+        Ok(LightTree::build(vpls, wanted))
+    }
+
+    fn bloom(&self, image: &Image, radius: f32, weight: f32) -> Result<Image, DeviceFault> {
+        Ok(lightcuts_image::bloom(image, radius, weight))
+    }
+
+    fn tone_map(&self, image: &Image, operator: &ToneMapping) -> Result<Image, DeviceFault> {
+        Ok(operator.apply(image))
+    }
+
+    fn revive(&self) -> Result<(), DeviceFault> {
+        Ok(())
+    }
+}
+
+/// The processor's name where the system tells it (Linux), else its architecture.
+pub fn processor_name() -> String {
+    static NAME: OnceLock<String> = OnceLock::new();
+    let read = || {
+        let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let line = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+        line.map_or(std::env::consts::ARCH, |(_, name)| name.trim()).to_owned()
+    };
+    NAME.get_or_init(read).clone()
+}
