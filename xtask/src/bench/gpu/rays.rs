@@ -40,7 +40,7 @@ pub(super) fn section(setup: &Setup, log: &mut Log) -> Result<String> {
             table.push(traced.row(&room, title));
         }
         passes(setup, &gpu, &room)?.into_iter().for_each(|row| table.push(row));
-        log.works.push(Work::new(format!("rays, {triangles} triangles"), &gpu));
+        log.works.push(Work::new(format!("rays, {} triangles", grouped(room.size())), &gpu));
     }
     Ok(table.markdown() + REMARKS)
 }
@@ -75,7 +75,7 @@ impl Traced {
         [
             grouped(room.size()),
             title.to_owned(),
-            "GPU".to_owned(),
+            "this GPU".to_owned(),
             grouped(number),
             format!("{:.1}", self.hits as f64 / number as f64 * 100.0),
             seconds(self.device_s),
@@ -106,7 +106,7 @@ fn passes(setup: &Setup, gpu: &GpuDevice<'_>, room: &Room) -> Result<[[String; 8
     let wall_s = stage_s(&on_gpu.stats, Stage::SecondPass);
     let cpu = format!("CPU, {CPU_THREADS} threads");
     Ok([
-        row("GPU".to_owned(), shadow, Some(gather_s(&on_gpu)), wall_s),
+        row("this GPU".to_owned(), shadow, Some(gather_s(&on_gpu)), wall_s),
         row(cpu, on_cpu.rays.shadow, None, stage_s(&on_cpu, Stage::SecondPass)),
     ])
 }

@@ -2,7 +2,7 @@
 
 use super::super::table::Table;
 use super::format::{grouped, mebibytes, millions_per_second, milliseconds, seconds};
-use super::log::{Log, Work, seconds as seconds_of};
+use super::log::{Log, Stages, Work, seconds as seconds_of};
 use super::room::Room;
 use super::scatter::Point;
 use super::setup::{CPU_THREADS, Render, Setup, stage_s};
@@ -44,14 +44,16 @@ const HEADER: [&str; 12] = [
 pub(super) fn section(setup: &Setup, log: &mut Log) -> Result<String> {
     let room = Room::new(TRIANGLES)?;
     let gpu = setup.open(&room.world)?;
-    let (mut table, mut bytes) = (Table::new(&HEADER), Vec::new());
+    let (mut table, mut bytes, mut stages) = (Table::new(&HEADER), Vec::new(), Stages::new());
     for count in VPLS {
         eprintln!("choice among {count} VPLs");
         let measured = Measured::new(setup, &gpu, &room, count)?;
         table.push(measured.row());
-        log.renders.push((format!("{} VPLs", grouped(u64::from(count))), measured.gpu.stages));
+        stages = measured.gpu.stages;
         bytes.push(format!("{} with {} VPLs", mebibytes(gpu.allocated_bytes()), grouped(u64::from(count))));
     }
+    // Of the most VPLs.
+    log.renders.push(("choice of VPLs".to_owned(), stages));
     log.works.push(Work::new("choice of VPLs".to_owned(), &gpu));
     Ok(table.markdown() + &remarks(&bytes))
 }

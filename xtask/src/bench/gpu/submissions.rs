@@ -30,7 +30,7 @@ to learn. The time includes waits between submissions, the bytes are those at th
 The durations of all those submissions:
 
 {}
-Seconds and dispatches of programs in one render each:
+Seconds and dispatches of programs in one render each, the last with a million VPLs:
 
 {}",
         of_works(&log.works),

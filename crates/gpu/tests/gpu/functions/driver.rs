@@ -64,11 +64,8 @@ impl Driver {
     }
 
     fn group(&self, layout: &wgpu::BindGroupLayout, buffers: &[wgpu::Buffer]) -> wgpu::BindGroup {
-        let entry = |(buffer, binding): (&wgpu::Buffer, u32)| wgpu::BindGroupEntry {
-            binding,
-            resource: buffer.as_entire_binding(),
-        };
-        let entries: Vec<_> = buffers.iter().zip(0..).map(entry).collect();
+        let numbered = buffers.iter().map(wgpu::Buffer::as_entire_binding).zip(0..);
+        let entries: Vec<_> = numbered.map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource }).collect();
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
