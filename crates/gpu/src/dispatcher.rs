@@ -95,6 +95,21 @@ impl Dispatcher {
         Ok(())
     }
 
+    /// Runs a program with nothing to do, before the pending dispatches. Some drivers compile a program for their processor
+    /// when it first runs: that is no work of a submission, and must not count as such.
+    pub(crate) fn warm_up(&self, context: &Context, kernel: &Kernel, find: Find<'_>) -> Result<(), DeviceFault> {
+        let group = self.bind(context, kernel, find);
+        let mut encoder = context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&kernel.pipeline);
+        pass.set_bind_group(0, &group, &[0]);
+        pass.dispatch_workgroups(1, 1, 1);
+        drop(pass);
+        // Every program takes a count, and does nothing where that is 0.
+        context.queue.write_buffer(&self.params_buffer.raw, 0, &[0; MAX_PARAMS as usize]);
+        context.submit(encoder.finish())
+    }
+
     /// Fills a buffer with zeros, after the pending dispatches.
     pub(crate) fn clear(&mut self, context: &Context, buffer: &Buffer) {
         Self::encoder(&mut self.encoder, context).clear_buffer(&buffer.raw, 0, None);

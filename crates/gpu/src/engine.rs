@@ -186,7 +186,7 @@ impl Engine {
         units: f64,
         others: &[(&str, &Buffer)],
     ) -> Result<(), DeviceFault> {
-        let kernel = self.kernel(entry)?;
+        let (kernel, is_new) = self.kernel(entry)?;
         let Self { context, dispatcher, world, buffers, .. } = self;
         let find = |name: &str| {
             let other = others.iter().find(|(of, _)| *of == name).map(|(_, buffer)| std::slice::from_ref(*buffer));
@@ -195,6 +195,9 @@ impl Engine {
                 .or_else(|| buffers.get(name).map(std::slice::from_ref))
                 .expect("every buffer of a program is allocated when the engine is made")
         };
+        if is_new {
+            dispatcher.warm_up(context, &kernel, &find)?;
+        }
         dispatcher.dispatch(context, &kernel, params, &find, items, units)
     }
 
@@ -221,15 +224,16 @@ impl Engine {
         self.context.kind == DeviceKind::SoftwareGpu
     }
 
-    fn kernel(&mut self, entry: &'static str) -> Result<Arc<Kernel>, DeviceFault> {
+    /// The compiled program, and whether it was compiled just now.
+    fn kernel(&mut self, entry: &'static str) -> Result<(Arc<Kernel>, bool), DeviceFault> {
         if let Some(kernel) = self.kernels.get(entry) {
-            return Ok(Arc::clone(kernel));
+            return Ok((Arc::clone(kernel), false));
         }
         let world = &self.world;
         let split = |name: &str| -> Split { world.split(name) };
         let kernel = Arc::new(self.context.compile(program(entry), split)?);
         self.kernels.insert(entry, Arc::clone(&kernel));
-        Ok(kernel)
+        Ok((kernel, true))
     }
 
     /// Splits `total` items, each `units` units of work, into dispatches that fit the plan.

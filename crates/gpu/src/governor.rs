@@ -10,8 +10,8 @@ use std::time::Duration;
 const PLANNED_SHARE: f64 = 0.5;
 /// Cost of a unit of a stage that has not run yet, in seconds: that of a ray on a slow software driver.
 const FIRST_COST: f64 = 4e-6;
-/// A cost falls at most to this share of what it was before: a submission grows fourfold at most.
-const GREATEST_FALL: f64 = 0.25;
+/// A cost falls at most to this share of what it was before: a submission is at most twice as large as the one before.
+const GREATEST_FALL: f64 = 0.5;
 /// Seconds of the first bin of the histogram; each bin ends at twice the one before.
 const FIRST_BIN: f64 = 0.000_25;
 

@@ -125,10 +125,16 @@ impl Engine {
     }
 
     fn gather_cut(&mut self, params: &GatherParams, layer: Layer, monitor: &dyn Monitor) -> Result<(), DeviceFault> {
-        let leaves = params.total_vpls.div_ceil(BLOCK_SIZE).max(1).next_power_of_two();
+        let blocks = params.total_vpls.div_ceil(BLOCK_SIZE);
+        let leaves = blocks.max(1).next_power_of_two();
         // Every VPL of a range may be chosen.
         let at_once = 1 << (self.rays_at_once() / BLOCK_SIZE).ilog2();
         self.over_lights("gather_cut", (layer.count, leaves, at_once), true, monitor, |engine, part| {
+            // The tree is filled up with empty leaves; that they cost nothing says nothing of the others.
+            let existing = blocks.saturating_sub(part.first_light).min(part.light_count);
+            if existing == 0 {
+                return Ok(());
+            }
             let params = GatherParams {
                 first: layer.first + part.first,
                 count: part.count,
@@ -138,7 +144,7 @@ impl Engine {
                 block_count: part.light_count,
                 ..*params
             };
-            engine.run("gather_cut", &params, part.count, f64::from(part.count) * f64::from(part.light_count))
+            engine.run("gather_cut", &params, part.count, f64::from(part.count) * f64::from(existing))
         })
     }
 
