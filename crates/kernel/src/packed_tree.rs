@@ -170,7 +170,7 @@ pub fn unpack_cluster(node: &PackedLightNode) -> LightCluster {
     }
 }
 
-/// A cosine less [`COSINE_MARGIN`], at least -1. It is clamped first: compilers of shaders otherwise add the margin to a
+/// A cosine less a margin against rounding, at least -1. It is clamped first: compilers of shaders otherwise add the margin to a
 /// part of the sum before.
 pub fn below_cosine(cosine: f32) -> f32 {
     cosine.max(COSINE_MARGIN - 1.0) - COSINE_MARGIN
