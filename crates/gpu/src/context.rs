@@ -1,7 +1,8 @@
 //! A device of the graphics library with its queue: memory, pipelines, reading back, and what went wrong.
 
 use crate::adapter::{kind, ordered};
-use crate::program::{Program, Split};
+use crate::buffers::Split;
+use crate::program::Program;
 use crate::sabotage::Sabotage;
 use lightcuts_render::device::{DeviceFault, DeviceKind};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -57,9 +58,10 @@ impl Drop for Held {
     }
 }
 
-/// A compiled program.
+/// An entry point of a program, compiled.
 #[derive(Debug)]
 pub(crate) struct Kernel {
+    pub(crate) entry: &'static str,
     pub(crate) program: &'static Program,
     pub(crate) pipeline: wgpu::ComputePipeline,
     pub(crate) layout: wgpu::BindGroupLayout,
@@ -154,23 +156,23 @@ impl Context {
         Ok(buffer)
     }
 
-    /// Compiles a program; `split` says how the world's buffers are split.
+    /// Compiles an entry point of a program; `split` says how the world's buffers are split.
     pub(crate) fn compile(
         &self,
+        entry: &'static str,
         program: &'static Program,
         split: impl Fn(&str) -> Split,
     ) -> Result<Kernel, DeviceFault> {
         let text = program.text(&split);
         let parts = |name: &str| split(name).parts;
-        let count: u32 = program.bindings.iter().map(|binding| parts(binding.name)).sum();
+        let count: u32 = program.bindings().map(|binding| parts(binding.name)).sum();
         if count > self.limits.max_storage_buffers_per_shader_stage {
             let limit = self.limits.max_storage_buffers_per_shader_stage;
             return Err(DeviceFault::OutOfMemory(format!(
-                "the scene would take {count} buffers in `{}`, of which {limit} are possible",
-                program.entry
+                "the scene would take {count} buffers in `{entry}`, of which {limit} are possible"
             )));
         }
-        let storage = program.bindings.iter().flat_map(|binding| {
+        let storage = program.bindings().flat_map(|binding| {
             let ty = wgpu::BufferBindingType::Storage { read_only: !binding.is_written };
             std::iter::repeat_n(ty, parts(binding.name) as usize)
         });
@@ -184,7 +186,7 @@ impl Context {
                 count: None,
             })
             .collect();
-        let label = Some(program.entry);
+        let label = Some(entry);
         let layout =
             self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
         let of_pipeline = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -208,7 +210,7 @@ impl Context {
             cache: None,
         });
         self.check()?;
-        Ok(Kernel { program, pipeline, layout })
+        Ok(Kernel { entry, program, pipeline, layout })
     }
 
     /// Submits commands and waits until they are done.

@@ -68,7 +68,7 @@ impl Dispatcher {
         if items == 0 {
             return Ok(());
         }
-        let stage = kernel.program.entry;
+        let stage = kernel.entry;
         let expected_s = self.governor.expected(stage, units);
         let is_full = self.expected_s + expected_s > self.governor.planned() || self.pending.len() == MAX_PENDING;
         if is_full && !self.pending.is_empty() {
@@ -187,13 +187,13 @@ impl Dispatcher {
     fn bind(&self, context: &Context, kernel: &Kernel, find: Find<'_>) -> wgpu::BindGroup {
         let params =
             wgpu::BufferBinding { buffer: &self.params_buffer.raw, offset: 0, size: wgpu::BufferSize::new(MAX_PARAMS) };
-        let buffers = kernel.program.bindings.iter().flat_map(|binding| find(binding.name));
+        let buffers = kernel.program.bindings().flat_map(|binding| find(binding.name));
         let resources = std::iter::once(wgpu::BindingResource::Buffer(params))
             .chain(buffers.map(|buffer| buffer.raw.as_entire_binding()));
         let entries: Vec<_> =
             resources.zip(0..).map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource }).collect();
         context.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(kernel.program.entry),
+            label: Some(kernel.entry),
             layout: &kernel.layout,
             entries: &entries,
         })

@@ -1,9 +1,9 @@
 //! A device at work: its memory by name, its programs, and work in parts that fit the governor's plan.
 
+use crate::buffers::Split;
 use crate::context::{Buffer, Context, Kernel};
 use crate::dispatcher::Dispatcher;
 use crate::governor::StageName;
-use crate::program::Split;
 use crate::programs::program;
 use crate::sabotage::Sabotage;
 use crate::wave::Capacity;
@@ -224,14 +224,14 @@ impl Engine {
         self.context.kind == DeviceKind::SoftwareGpu
     }
 
-    /// The compiled program, and whether it was compiled just now.
+    /// The compiled entry point, and whether it was compiled just now.
     fn kernel(&mut self, entry: &'static str) -> Result<(Arc<Kernel>, bool), DeviceFault> {
         if let Some(kernel) = self.kernels.get(entry) {
             return Ok((Arc::clone(kernel), false));
         }
         let world = &self.world;
         let split = |name: &str| -> Split { world.split(name) };
-        let kernel = Arc::new(self.context.compile(program(entry), split)?);
+        let kernel = Arc::new(self.context.compile(entry, program(entry), split)?);
         self.kernels.insert(entry, Arc::clone(&kernel));
         Ok((kernel, true))
     }

@@ -4,6 +4,7 @@
 
 mod adapter;
 mod bloom;
+pub mod buffers;
 mod context;
 mod counters;
 mod device;

@@ -1,60 +1,33 @@
 //! Programs: lists of WGSL sources with the buffers that they use, joined into one text whose lines can be found again.
 
-use std::fmt::Write as _;
-
+use crate::buffers::{Split, accessor, element};
 use lightcuts_kernel::wgsl::Source;
+use std::fmt::Write as _;
 
 /// A storage buffer of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Binding {
-    /// Name of the variable; buffers of one name have one layout in all programs.
+    /// Name of the variable.
     pub name: &'static str,
-    /// WGSL type of an element.
-    pub element: &'static str,
     /// Whether the program writes to it.
     pub is_written: bool,
 }
 
-/// A compute program.
+/// A compute program: entry points that take the same parameters and buffers.
 #[derive(Debug, Clone, Copy)]
 pub struct Program {
-    /// Name of the entry point, and of the program.
-    pub entry: &'static str,
+    /// Names of the entry points.
+    pub entries: &'static [&'static str],
     /// Type of `params`, which every program has.
     pub params: &'static str,
     /// Invocations of a workgroup.
     pub workgroup: u32,
     /// What is joined, in any order.
-    pub sources: &'static [Source],
-    /// Storage buffers in the order of their bindings, from 1 on.
-    pub bindings: &'static [Binding],
-}
-
-/// Functions through which programs read the world's large buffers, which may be split over several bindings.
-const ACCESSORS: [(&str, &str); 4] = [
-    ("nodes", "compressed_node"),
-    ("items", "leaf_item"),
-    ("corners", "triangle_corners"),
-    ("primitives", "primitive_record"),
-];
-
-/// Whether buffers of this name may be split.
-pub(crate) fn is_splittable(name: &str) -> bool {
-    ACCESSORS.iter().any(|(large, _)| *large == name)
-}
-
-/// How the buffers of a name are split: into how many parts of 2^shift elements.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Split {
-    /// Number of buffers.
-    pub parts: u32,
-    /// Elements of all but the last, as a power of two.
-    pub shift: u32,
-}
-
-impl Split {
-    /// One buffer.
-    pub const WHOLE: Self = Self { parts: 1, shift: 31 };
+    pub sources: &'static [&'static [Source]],
+    /// Names of the storage buffers that are read only.
+    pub reads: &'static [&'static [&'static str]],
+    /// Names of those that are written to.
+    pub writes: &'static [&'static str],
 }
 
 /// A program's text, and where its lines come from.
@@ -75,25 +48,31 @@ impl Text {
 }
 
 impl Program {
+    /// Its storage buffers in the order of their bindings, from 1 on.
+    pub fn bindings(&self) -> impl Iterator<Item = Binding> {
+        let reads = self.reads.iter().copied().flatten().map(|&name| Binding { name, is_written: false });
+        reads.chain(self.writes.iter().map(|&name| Binding { name, is_written: true }))
+    }
+
     /// Joins the sources under declarations of the buffers. `split` says how a buffer is split.
     pub fn text(&self, split: impl Fn(&str) -> Split) -> Text {
         let mut wgsl = format!("@group(0) @binding(0) var<uniform> params: {};\n", self.params);
         let mut number = 0;
-        for binding in self.bindings {
-            let split = split(binding.name);
-            let access = if binding.is_written { "read_write" } else { "read" };
+        for Binding { name, is_written } in self.bindings() {
+            let split = split(name);
+            let access = if is_written { "read_write" } else { "read" };
+            let element = element(name);
             for part in 0..split.parts {
                 number += 1;
-                let name = part_name(binding.name, split, part);
-                let element = binding.element;
+                let name = part_name(name, split, part);
                 let _ = writeln!(wgsl, "@group(0) @binding({number}) var<storage, {access}> {name}: array<{element}>;");
             }
-            if let Some((_, function)) = ACCESSORS.iter().find(|(name, _)| *name == binding.name) {
-                wgsl += &accessor(binding, function, split);
+            if let Some(function) = accessor(name) {
+                wgsl += &accessor_text(name, function, split);
             }
         }
         let mut starts = Vec::new();
-        for source in self.sources {
+        for source in self.sources.iter().copied().flatten() {
             starts.push((source.path, wgsl.lines().count() + 1));
             wgsl += source.text;
         }
@@ -106,8 +85,8 @@ fn part_name(name: &str, split: Split, part: u32) -> String {
 }
 
 /// A function from an element's number to the element, wherever it is.
-fn accessor(binding: &Binding, function: &str, split: Split) -> String {
-    let Binding { name, element, .. } = binding;
+fn accessor_text(name: &str, function: &str, split: Split) -> String {
+    let element = element(name);
     if split.parts == 1 {
         return format!("fn {function}(index: u32) -> {element} {{ return {name}[index]; }}\n");
     }
@@ -123,7 +102,7 @@ fn accessor(binding: &Binding, function: &str, split: Split) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::programs::PROGRAMS;
+    use crate::programs::{PROGRAMS, program};
 
     /// Every program is valid WGSL, whole and split, and stays within the portable number of storage buffers.
     #[test]
@@ -131,28 +110,34 @@ mod tests {
         use naga::valid::{Capabilities, ValidationFlags, Validator};
         for program in PROGRAMS {
             for parts in [1, 3] {
-                let split = |name: &str| if is_splittable(name) { Split { parts, shift: 20 } } else { Split::WHOLE };
+                let split = |name: &str| match accessor(name) {
+                    Some(_) => Split { parts, shift: 20 },
+                    None => Split::WHOLE,
+                };
                 let text = program.text(split);
                 let module = naga::front::wgsl::parse_str(&text.wgsl).unwrap_or_else(|error| {
                     let line = error.location(&text.wgsl).map_or(0, |place| place.line_number as usize);
-                    panic!("{}: {:?}: {}", program.entry, text.origin(line), error.emit_to_string(&text.wgsl))
+                    panic!("{:?}: {:?}: {}", program.entries, text.origin(line), error.emit_to_string(&text.wgsl))
                 });
                 let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
                 let checked = validator.validate(&module);
-                checked.unwrap_or_else(|error| panic!("{}: {}", program.entry, error.emit_to_string(&text.wgsl)));
-                let entry = module.entry_points.iter().find(|entry| entry.name == program.entry).unwrap();
-                assert_eq!(entry.workgroup_size, [program.workgroup, 1, 1], "{}", program.entry);
+                checked.unwrap_or_else(|error| panic!("{:?}: {}", program.entries, error.emit_to_string(&text.wgsl)));
+                let found: Vec<_> =
+                    module.entry_points.iter().map(|entry| (&*entry.name, entry.workgroup_size)).collect();
+                let listed: Vec<_> = program.entries.iter().map(|&name| (name, [program.workgroup, 1, 1])).collect();
+                assert_eq!(found, listed);
                 assert!(program.workgroup <= 256);
             }
-            assert!(program.bindings.len() <= 10, "{}: {} buffers", program.entry, program.bindings.len());
+            let buffers = program.bindings().count();
+            assert!(buffers <= 10, "{:?}: {buffers} buffers", program.entries);
         }
     }
 
     #[test]
     fn lines_are_found_again() {
-        let program = PROGRAMS.iter().find(|program| program.entry == "trace").unwrap();
+        let program = program("trace");
         let text = program.text(|_| Split::WHOLE);
-        for source in program.sources {
+        for source in program.sources.iter().copied().flatten() {
             let wanted = source.text.lines().next().unwrap();
             let found = text
                 .wgsl

@@ -1,7 +1,7 @@
 //! The world on the device: one table of its buffers, split where one binding cannot hold them.
 
+use crate::buffers::{Split, accessor};
 use crate::context::{Buffer, Context};
-use crate::program::Split;
 use lightcuts_render::device::DeviceFault;
 use lightcuts_world::{CompressedHierarchy, World};
 use std::collections::BTreeMap;
@@ -78,7 +78,7 @@ impl WorldBuffers {
 
 /// How a buffer is split so that no part is larger than the limit.
 fn split(name: &str, bytes: usize, stride: usize, limit: u64) -> Split {
-    if bytes as u64 <= limit || !crate::program::is_splittable(name) {
+    if bytes as u64 <= limit || accessor(name).is_none() {
         return Split::WHOLE;
     }
     let shift = (limit / stride as u64).max(1).ilog2();

@@ -1,10 +1,3 @@
-struct RangeParams {
-    first: u32,
-    count: u32,
-    rules: u32,
-    padding: u32,
-}
-
 // A ray by itself, outside any ray tree.
 struct ProbeRay {
     origin: vec3<f32>,

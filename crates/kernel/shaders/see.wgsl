@@ -1,10 +1,3 @@
-struct RangeParams {
-    first: u32,
-    count: u32,
-    rules: u32,
-    padding: u32,
-}
-
 struct SeenRecord {
     albedo: vec3<f32>,
     samples: u32,

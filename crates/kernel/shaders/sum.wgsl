@@ -1,10 +1,3 @@
-struct RangeParams {
-    first: u32,
-    count: u32,
-    rules: u32,
-    padding: u32,
-}
-
 // Adds the children's colours and counts to some nodes of a layer; a hit's colour is at most 1.
 @compute @workgroup_size(64)
 fn sum_layer(@builtin(global_invocation_id) id: vec3<u32>) {

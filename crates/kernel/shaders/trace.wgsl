@@ -1,10 +1,3 @@
-struct RangeParams {
-    first: u32,
-    count: u32,
-    rules: u32,
-    padding: u32,
-}
-
 @compute @workgroup_size(64)
 fn trace(@builtin(global_invocation_id) id: vec3<u32>) {
     if (id.x >= params.count) {

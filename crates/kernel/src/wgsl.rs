@@ -88,6 +88,8 @@ pub mod shaders {
 
     /// Records of ray trees.
     pub const RECORDS: Source = source!("shaders/records.wgsl");
+    /// Parameters of programs over a range.
+    pub const RANGE: Source = source!("shaders/range.wgsl");
     /// Sums over all invocations.
     pub const COUNTERS: Source = source!("shaders/counters.wgsl");
     /// Camera rays.

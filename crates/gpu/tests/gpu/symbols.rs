@@ -7,7 +7,7 @@ mod wgsl_module;
 
 use crate::twins::declared;
 use exceptions::{RENAMED_RECORDS, RUST_CONSTANTS, WGSL_CONSTANTS, WGSL_FUNCTIONS};
-use lightcuts_gpu::program::Split;
+use lightcuts_gpu::buffers::{Split, element};
 use lightcuts_gpu::programs::PROGRAMS;
 use lightcuts_gpu::records::{Layout, layouts};
 use lightcuts_kernel::wgsl::{Source, TWINS};
@@ -81,7 +81,7 @@ fn constants_are_equal() {
 /// The twins and every program, each with its name.
 fn all_modules() -> Vec<(&'static str, WgslModule)> {
     let of_program = |program: &lightcuts_gpu::program::Program| {
-        (program.entry, WgslModule::new(&program.text(|_| Split::WHOLE).wgsl))
+        (program.entries[0], WgslModule::new(&program.text(|_| Split::WHOLE).wgsl))
     };
     std::iter::once(("twins", WgslModule::of_twins())).chain(PROGRAMS.iter().map(of_program)).collect()
 }
@@ -118,9 +118,9 @@ fn every_structure_in_a_buffer_is_a_record() {
     let records: BTreeSet<_> = all_records().iter().map(|record| record.name).collect();
     for program in &PROGRAMS {
         let module = WgslModule::new(&program.text(|_| Split::WHOLE).wgsl);
-        let elements = program.bindings.iter().map(|binding| binding.element).chain([program.params]);
+        let elements = program.bindings().map(|binding| element(binding.name)).chain([program.params]);
         for element in elements.filter(|element| module.layout(element).is_some()) {
-            assert!(records.contains(element), "{}: `{element}` is no record of Rust", program.entry);
+            assert!(records.contains(element), "{:?}: `{element}` is no record of Rust", program.entries);
         }
     }
 }
