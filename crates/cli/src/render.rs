@@ -11,7 +11,7 @@ use crate::summary::{Statistics, summary};
 use crate::{console, devices, interrupt, memory};
 use lightcuts::device::Device;
 use lightcuts::gpu::Fleet;
-use lightcuts::{Options, Rendering, Simd, VplCsvError, World, image, vpls_from_csv, vpls_to_csv};
+use lightcuts::{Options, Rendering, Simd, Station, VplCsvError, World, image, vpls_from_csv, vpls_to_csv};
 use std::path::Path;
 
 /// Text in a picture that was not finished.
@@ -47,7 +47,7 @@ fn finish(plan: &Plan, rendering: &Rendering, fleet: &Fleet<'_>, quiet: bool) ->
     let statistics = Statistics::new(plan, rendering, fleet);
     let (written, exit) = plan.outputs.write(|kind, path| match kind {
         Kind::Exr => write_exr(path, rendering, &plan.job),
-        Kind::Png => write_png(path, rendering, &plan.job, fleet.stations().develop),
+        Kind::Png => write_png(path, rendering, &plan.job, *fleet.stations().at(Station::Develop)),
         Kind::Stats => write(path, &statistics.to_json()?),
         Kind::Vpls => write(path, &vpls_to_csv(&rendering.vpls)),
         Kind::Job => write(path, &job_text(&plan.job, path)?),

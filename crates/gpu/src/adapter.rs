@@ -75,6 +75,25 @@ pub struct AdapterSummary {
     pub unsuited: Option<String>,
 }
 
+impl Default for AdapterSummary {
+    /// The least suited adapter: a card without a name that can do just what programs need.
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            kind: DeviceKind::Gpu,
+            api: "vulkan".to_owned(),
+            driver: String::new(),
+            max_binding_bytes: 1 << 27,
+            max_buffer_bytes: 1 << 28,
+            max_storage_buffers: MIN_STORAGE_BUFFERS,
+            max_invocations: MIN_INVOCATIONS,
+            subgroup_sizes: [4, 128],
+            has_timestamps: false,
+            unsuited: None,
+        }
+    }
+}
+
 /// All adapters, the best first: separate cards, built-in ones, virtual and unknown ones, software drivers.
 ///
 /// They are looked for once per process: loading drivers takes time, and some print remarks on their surroundings.
@@ -170,19 +189,7 @@ mod tests {
     use super::*;
 
     fn adapter(name: &str, kind: DeviceKind) -> AdapterSummary {
-        AdapterSummary {
-            name: name.to_owned(),
-            kind,
-            api: "Vulkan".to_owned(),
-            driver: String::new(),
-            max_binding_bytes: 1 << 27,
-            max_buffer_bytes: 1 << 28,
-            max_storage_buffers: 10,
-            max_invocations: 256,
-            subgroup_sizes: [8, 8],
-            has_timestamps: true,
-            unsuited: None,
-        }
+        AdapterSummary { name: name.to_owned(), kind, ..AdapterSummary::default() }
     }
 
     #[test]

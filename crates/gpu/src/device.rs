@@ -78,8 +78,13 @@ impl<'w> GpuDevice<'w> {
         if *choice == DeviceChoice::Cpu {
             return Ok(None);
         }
-        let adapters = adapters();
-        let Some(place) = choose(choice, &adapters)? else { return Ok(None) };
+        choose(choice, &adapters())?.map(|place| Self::at(place, world, options)).transpose()
+    }
+
+    /// Opens the adapter at a place in the list of [`adapters`] and brings a world to it.
+    pub fn at(place: usize, world: &'w World, options: &GpuOptions) -> Result<Self, DeviceFault> {
+        let adapter = adapters().into_iter().nth(place);
+        let adapter = adapter.ok_or_else(|| DeviceFault::Failed("the adapter is not there any more".to_owned()))?;
         let options = EngineOptions {
             adapter: place,
             budget: options.budget,
@@ -92,7 +97,7 @@ impl<'w> GpuDevice<'w> {
         let engine = Engine::new(world, &hierarchy, &options)?;
         let state =
             State { options, engine: Some(engine), reports: Vec::new(), is_short_of_memory: false, batch: FIRST_BATCH };
-        Ok(Some(Self { world, hierarchy, adapter: adapters[place].clone(), state: Mutex::new(state) }))
+        Ok(Self { world, hierarchy, adapter, state: Mutex::new(state) })
     }
 
     /// What the adapter is and can do.

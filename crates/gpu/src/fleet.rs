@@ -6,7 +6,7 @@
 use crate::adapter::{AdapterSummary, DeviceChoice, adapters, choose};
 use crate::device::{GpuDevice, GpuOptions};
 use lightcuts_render::device::{CpuDevice, Device, DeviceFault};
-use lightcuts_render::{Simd, Stations};
+use lightcuts_render::{PerStation, Simd, Stations};
 use lightcuts_world::World;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,50 +16,10 @@ use std::path::Path;
 const CARD_FILES: [&str; 6] =
     ["/dev/dri", "/dev/nvidiactl", "/dev/nvhost-gpu", "/dev/dxg", "/dev/mali0", "/dev/kgsl-3d0"];
 
-/// One of something for each station; see [`Stations`].
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct PerStation<T> {
-    /// The first pass, which places VPLs.
-    pub place: T,
-    /// Photons for caustics.
-    pub photons: T,
-    /// The light tree.
-    pub tree: T,
-    /// The second pass.
-    pub gather: T,
-    /// Bloom.
-    pub develop: T,
-}
-
-impl<T> PerStation<T> {
-    /// The same for every station.
-    pub fn all(value: &T) -> Self
-    where
-        T: Clone,
-    {
-        let again = || value.clone();
-        Self { place: again(), photons: again(), tree: again(), gather: again(), develop: again() }
-    }
-
-    fn each(&self) -> [&T; 5] {
-        [&self.place, &self.photons, &self.tree, &self.gather, &self.develop]
-    }
-
-    fn try_map<U, E>(&self, mut f: impl FnMut(&T) -> Result<U, E>) -> Result<PerStation<U>, E> {
-        Ok(PerStation {
-            place: f(&self.place)?,
-            photons: f(&self.photons)?,
-            tree: f(&self.tree)?,
-            gather: f(&self.gather)?,
-            develop: f(&self.develop)?,
-        })
-    }
-}
-
 /// The adapters among which something of what is wanted may be. Drivers are not loaded in vain, which would take memory and
 /// a good part of a second: not where the processor alone is wanted, nor to find a card where there is none.
 pub fn adapters_for(wanted: &PerStation<DeviceChoice>) -> Vec<AdapterSummary> {
-    let needs_drivers = |choice: &&DeviceChoice| match choice {
+    let needs_drivers = |choice: &DeviceChoice| match choice {
         DeviceChoice::Cpu => false,
         DeviceChoice::Auto => may_have_a_card(),
         DeviceChoice::Gpu | DeviceChoice::Named(_) => true,
@@ -106,7 +66,7 @@ impl Assignment {
             let adapter = choose(choice, adapters)?;
             Ok::<_, NoDevice>(Seat { choice: choice.clone(), adapter })
         };
-        wanted.try_map(seat).map(Self)
+        wanted.map(seat).transpose().map(Self)
     }
 
     /// Whether any station takes an adapter.
@@ -134,10 +94,10 @@ impl<'w> Fleet<'w> {
         note: &dyn Fn(&str),
     ) -> Result<Self, NoDevice> {
         let mut gpus = BTreeMap::new();
-        let adapters = assignment.0.try_map(|seat| {
+        let adapters = assignment.0.map(|seat| {
             let Some(place) = seat.adapter else { return Ok(None) };
             let is_first = !gpus.contains_key(&place);
-            match gpus.entry(place).or_insert_with(|| open(&seat.choice, world, options)) {
+            match gpus.entry(place).or_insert_with(|| GpuDevice::at(place, world, options).map_err(NoDevice::from)) {
                 Ok(_) => Ok(Some(place)),
                 Err(why) if seat.choice != DeviceChoice::Auto => Err(why.clone()),
                 Err(why) => {
@@ -147,15 +107,13 @@ impl<'w> Fleet<'w> {
                     Ok(None)
                 }
             }
-        })?;
-        Ok(Self { cpu: CpuDevice::new(world, simd), gpus, adapters })
+        });
+        Ok(Self { cpu: CpuDevice::new(world, simd), gpus, adapters: adapters.transpose()? })
     }
 
     /// Which device runs which station.
     pub fn stations(&self) -> Stations<'_> {
-        let at = |adapter: Option<usize>| self.at(adapter);
-        let PerStation { place, photons, tree, gather, develop } = self.adapters;
-        Stations { place: at(place), photons: at(photons), tree: at(tree), gather: at(gather), develop: at(develop) }
+        self.adapters.map(|&adapter| self.at(adapter))
     }
 
     /// The GPUs that are open, the best first.
@@ -171,48 +129,32 @@ impl<'w> Fleet<'w> {
     }
 }
 
-fn open<'w>(choice: &DeviceChoice, world: &'w World, options: &GpuOptions) -> Result<GpuDevice<'w>, NoDevice> {
-    let opened = GpuDevice::open(choice, world, options)?;
-    opened.ok_or_else(|| NoDevice("the adapter went away".to_owned()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lightcuts_render::Station;
     use lightcuts_render::device::DeviceKind;
     use lightcuts_scene::SceneDesc;
     use std::cell::RefCell;
 
     fn adapter(name: &str, kind: DeviceKind) -> AdapterSummary {
-        AdapterSummary {
-            name: name.to_owned(),
-            kind,
-            api: "Vulkan".to_owned(),
-            driver: String::new(),
-            max_binding_bytes: 1 << 27,
-            max_buffer_bytes: 1 << 28,
-            max_storage_buffers: 10,
-            max_invocations: 256,
-            subgroup_sizes: [8, 8],
-            has_timestamps: true,
-            unsuited: None,
-        }
+        AdapterSummary { name: name.to_owned(), kind, ..AdapterSummary::default() }
     }
 
     #[test]
     fn each_station_takes_the_adapter_that_it_asked_for() {
         let adapters = [adapter("Card", DeviceKind::Gpu), adapter("llvmpipe", DeviceKind::SoftwareGpu)];
-        let mut wanted = PerStation::all(&DeviceChoice::Auto);
-        wanted.tree = DeviceChoice::Cpu;
-        wanted.gather = DeviceChoice::Named("LLVM".to_owned());
+        let wanted = PerStation::all(DeviceChoice::Auto)
+            .with(Station::Tree, DeviceChoice::Cpu)
+            .with(Station::Gather, DeviceChoice::Named("LLVM".to_owned()));
         let Assignment(seats) = Assignment::new(&wanted, &adapters).unwrap();
-        assert_eq!(seats.each().map(|seat| seat.adapter), [Some(0), Some(0), None, Some(1), Some(0)]);
-        assert!(!Assignment::new(&PerStation::all(&DeviceChoice::Auto), &adapters[1..]).unwrap().takes_adapters());
+        assert_eq!(seats.map(|seat| seat.adapter).each().to_owned(), [Some(0), Some(0), None, Some(1), Some(0)]);
+        assert!(!Assignment::new(&PerStation::all(DeviceChoice::Auto), &adapters[1..]).unwrap().takes_adapters());
     }
 
     #[test]
     fn what_is_not_there_is_named() {
-        let wanted = PerStation::all(&DeviceChoice::Named("Card".to_owned()));
+        let wanted = PerStation::all(DeviceChoice::Named("Card".to_owned()));
         let why = Assignment::new(&wanted, &[]).unwrap_err().to_string();
         assert!(why.starts_with("there is no device `Card`"), "{why}");
     }
@@ -224,24 +166,23 @@ mod tests {
         let told = RefCell::new(Vec::new());
         let note = |text: &str| told.borrow_mut().push(text.to_owned());
         let open = |choice: DeviceChoice| {
-            let seat = Seat { choice, adapter: Some(0) };
-            Fleet::open(&Assignment(PerStation::all(&seat)), &world, Simd::Auto, &GpuOptions::default(), &note)
+            let seat = Seat { choice, adapter: Some(usize::MAX) };
+            Fleet::open(&Assignment(PerStation::all(seat)), &world, Simd::Auto, &GpuOptions::default(), &note)
         };
         assert!(open(DeviceChoice::Named("no such card".to_owned())).is_err());
         assert!(told.borrow().is_empty());
         let fleet = open(DeviceChoice::Auto).unwrap();
-        // A machine with a card opens it. On others the CPU renders, and that is told once.
-        assert_eq!(fleet.gpus().count() + told.borrow().len(), 1);
-        assert_eq!(fleet.stations().gather.info().kind == DeviceKind::Cpu, fleet.gpus().count() == 0);
+        assert_eq!((fleet.gpus().count(), told.borrow().len()), (0, 1), "{told:?}");
+        assert_eq!(fleet.stations().at(Station::Gather).info().kind, DeviceKind::Cpu);
     }
 
     #[test]
     fn the_processor_needs_no_adapter() {
-        assert_eq!(adapters_for(&PerStation::all(&DeviceChoice::Cpu)), []);
+        assert_eq!(adapters_for(&PerStation::all(DeviceChoice::Cpu)), []);
         let world = World::new(&SceneDesc::default()).unwrap();
-        let assignment = Assignment::new(&PerStation::all(&DeviceChoice::Cpu), &[]).unwrap();
+        let assignment = Assignment::new(&PerStation::all(DeviceChoice::Cpu), &[]).unwrap();
         let fleet = Fleet::open(&assignment, &world, Simd::Auto, &GpuOptions::default(), &|_| ()).unwrap();
         assert_eq!(fleet.gpus().count(), 0);
-        assert_eq!(fleet.stations().gather.info().kind, DeviceKind::Cpu);
+        assert_eq!(fleet.stations().at(Station::Gather).info().kind, DeviceKind::Cpu);
     }
 }

@@ -31,6 +31,6 @@ mod world_buffers;
 
 pub use adapter::{AdapterSummary, DeviceChoice, adapters, choose};
 pub use device::{GpuDevice, GpuOptions};
-pub use fleet::{Assignment, Fleet, NoDevice, PerStation, adapters_for};
+pub use fleet::{Assignment, Fleet, NoDevice, adapters_for};
 pub use governor::{GovernorReport, StageReport};
 pub use sabotage::Sabotage;

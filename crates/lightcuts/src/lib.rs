@@ -27,12 +27,12 @@
 //! [`render_on`] lets each station run on a [`device`]; a [`gpu::Fleet`] opens those that are wanted:
 //!
 //! ```no_run
-//! use lightcuts::gpu::{self, Assignment, DeviceChoice, Fleet, GpuOptions, PerStation};
-//! use lightcuts::{Options, Rendering, Settings, Simd, Unwatched, World};
+//! use lightcuts::gpu::{self, Assignment, DeviceChoice, Fleet, GpuOptions};
+//! use lightcuts::{Options, PerStation, Rendering, Settings, Simd, Unwatched, World};
 //!
 //! fn on_a_gpu(world: &World, settings: &Settings) -> Result<Rendering, Box<dyn std::error::Error>> {
 //!     // A graphics card if there is one, else the CPU; `DeviceChoice::Gpu` fails without any.
-//!     let wanted = PerStation::all(&DeviceChoice::Auto);
+//!     let wanted = PerStation::all(DeviceChoice::Auto);
 //!     let assignment = Assignment::new(&wanted, &gpu::adapters())?;
 //!     let note = |text: &str| eprintln!("{text}");
 //!     let fleet = Fleet::open(&assignment, world, Simd::Auto, &GpuOptions::default(), &note)?;
@@ -42,8 +42,8 @@
 
 pub use lightcuts_import::{ImportError, ImportOptions, Imported, load};
 pub use lightcuts_render::{
-    Monitor, Options, Rendering, Settings, SettingsError, Simd, Stage, Stations, Stats, Unwatched, VplCsvError, device,
-    render, render_on, vpls_from_csv, vpls_to_csv,
+    Monitor, Options, PerStation, Rendering, Settings, SettingsError, Simd, Stage, Station, Stations, Stats, Unwatched,
+    VplCsvError, device, render, render_on, vpls_from_csv, vpls_to_csv,
 };
 pub use lightcuts_scene::SceneDesc;
 pub use lightcuts_world::{World, WorldError};

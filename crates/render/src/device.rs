@@ -90,6 +90,17 @@ pub enum DeviceKind {
     SoftwareGpu,
 }
 
+impl DeviceKind {
+    /// Name in statistics.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Cpu => "cpu",
+            Self::Gpu => "gpu",
+            Self::SoftwareGpu => "software gpu",
+        }
+    }
+}
+
 /// Why a device did not return a result. What it returned before stays valid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DeviceFault {

@@ -1,18 +1,19 @@
 //! A render from its first pass to the finished picture: the walk through the stations.
 
 use crate::cpu::CpuDevice;
+use crate::crew::Crew;
 use crate::device::{Device, Lighting, Pass, Placement, Shifts, TileResult, View, VplLighting, Wants};
 use crate::film::Tile;
+use crate::light_ratio::LightRatio;
 use crate::light_tree::LightTree;
 use crate::monitor::{Monitor, Stage};
 use crate::occlusion::Occlusion;
 use crate::original::OriginalDraws;
 use crate::photon_map::{PhotonMap, photon_targets};
-use crate::ray_tree::TreeHit;
 use crate::rendering::{Canvas, Rendering};
 use crate::sampler::Sampler;
-use crate::settings::{Bloom, Settings, Strategy};
-use crate::stations::{Crew, Station, Stations};
+use crate::settings::{Bloom, Settings};
+use crate::stations::{Station, Stations};
 use crate::stats::{Stats, timed};
 use crate::{Options, Vpl};
 use lightcuts_image::Image;
@@ -21,7 +22,7 @@ use lightcuts_kernel::rng::stream;
 use lightcuts_world::World;
 
 /// Edge of a tile in pixels.
-const TILE_SIZE: u32 = 16;
+pub(crate) const TILE_SIZE: u32 = 16;
 
 /// Purposes of random numbers; each has its own stream.
 const SHIFTS: u32 = 1;
@@ -30,15 +31,15 @@ const OCCLUSION: u32 = 3;
 
 /// A render on its way.
 pub(crate) struct Job<'a> {
-    settings: &'a Settings,
-    view: View<'a>,
+    pub(crate) settings: &'a Settings,
+    pub(crate) view: View<'a>,
     given_vpls: Option<&'a [Vpl]>,
-    monitor: &'a dyn Monitor,
-    crew: Crew<'a>,
+    pub(crate) monitor: &'a dyn Monitor,
+    pub(crate) crew: Crew<'a>,
     canvas: Canvas,
     stats: Stats,
     /// The original's random numbers, where they are to be reproduced.
-    draws: Option<OriginalDraws>,
+    pub(crate) draws: Option<OriginalDraws>,
     cancelled: bool,
 }
 
@@ -135,84 +136,11 @@ impl<'a> Job<'a> {
         vpls
     }
 
-    /// The first pass with the original's draws.
-    fn first_pass_original(&mut self, draws: OriginalDraws) -> Vec<Vpl> {
-        let view = self.view;
-        let occlusion = self.occlusion();
-        let lighting = Lighting::Scene { occlusion: occlusion.as_ref() };
-        match self.crew.run(Station::Place, self.monitor, |device, _| device.original_shifts(&view)) {
-            Some(shifts) => self.first_pass_at(lighting, &shifts, draws),
-            None => self.first_pass_by_rows(lighting, draws),
-        }
-    }
-
-    /// The original's first pass with shifts that a device has found beforehand; the draws decide about hits only.
-    fn first_pass_at(&mut self, lighting: Lighting<'_>, shifts: &[[f32; 2]], mut draws: OriginalDraws) -> Vec<Vpl> {
-        let width = self.view.camera.width;
-        let placement = self.original_placement();
-        let mut vpls = Vec::new();
-        let pass = self.pass(lighting, Shifts::Given(shifts), Wants::SurfacesAndHits);
-        self.run_pass(Stage::FirstPass, &pass, |canvas, result| {
-            canvas.first.merge(&result.film);
-            draws.row(width);
-            placement(&mut draws, &result.hits, &mut vpls);
-        });
-        self.draws = Some(draws);
-        vpls
-    }
-
-    /// The original's first pass row by row, because each row's shifts depend on the number of hits before it.
-    fn first_pass_by_rows(&mut self, lighting: Lighting<'_>, mut draws: OriginalDraws) -> Vec<Vpl> {
-        let (width, height) = (self.view.camera.width, self.view.camera.height);
-        let placement = self.original_placement();
-        let mut shifts = vec![[0.0; 2]; (width * height) as usize];
-        let mut vpls = Vec::new();
-        self.monitor.begin(Stage::FirstPass, u64::from(height * width.div_ceil(TILE_SIZE)));
-        for j in 0..height {
-            let start = (j * width) as usize;
-            shifts[start..start + width as usize].copy_from_slice(&draws.row(width));
-            let tiles: Vec<Tile> = (0..width)
-                .step_by(TILE_SIZE as usize)
-                .map(|i| Tile { i, j, width: TILE_SIZE.min(width - i), height: 1 })
-                .collect();
-            let pass = self.pass(lighting, Shifts::Given(&shifts), Wants::SurfacesAndHits);
-            let complete = self.merge_tiles(Station::Place, &pass, &tiles, |canvas, result| {
-                canvas.first.merge(&result.film);
-                placement(&mut draws, &result.hits, &mut vpls);
-            });
-            if !complete {
-                break;
-            }
-        }
-        self.monitor.end();
-        self.draws = Some(draws);
-        vpls
-    }
-
-    /// Makes VPLs of hits: each takes one of the original's draws.
-    fn original_placement(&self) -> impl Fn(&mut OriginalDraws, &[TreeHit], &mut Vec<Vpl>) + use<> {
-        let (camera, probability) = (&self.view.camera, self.settings.vpl.probability);
-        let placement = Placement::new(&self.settings.vpl, u64::from(camera.width * camera.height), 0);
-        move |draws, hits, vpls| {
-            let accepted = hits.iter().filter(|_| draws.accepts(probability));
-            vpls.extend(accepted.filter_map(|hit| placement.vpl(hit)));
-        }
-    }
-
     /// Station 4, in the layout that the second pass wants.
     fn build_tree(&mut self, vpls: &[Vpl]) -> LightTree {
         self.skip_tree_draws(vpls.len());
         let wanted = self.crew.at(Station::Gather).preferred_layout();
         self.crew.run(Station::Tree, self.monitor, |device, _| device.build_tree(vpls, wanted))
-    }
-
-    /// The draws that the original spends on its light tree.
-    fn skip_tree_draws(&mut self, vpls: usize) {
-        if let Some(draws) = &mut self.draws
-            && self.settings.gather.strategy != Strategy::All
-        {
-            draws.skip_light_tree(vpls);
-        }
     }
 
     fn shoot_photons(&mut self) -> Option<PhotonMap> {
@@ -282,7 +210,7 @@ impl<'a> Job<'a> {
         });
     }
 
-    fn occlusion(&self) -> Option<Occlusion> {
+    pub(crate) fn occlusion(&self) -> Option<Occlusion> {
         let settings = &self.settings.ambient_occlusion;
         settings.enabled.then(|| Occlusion::new(settings, stream(self.settings.run.seed, OCCLUSION)))
     }
@@ -291,7 +219,7 @@ impl<'a> Job<'a> {
         Sampler::new(self.settings.sampling.sampler, stream(self.settings.run.seed, SHIFTS), first, count)
     }
 
-    fn pass<'p>(&self, lighting: Lighting<'p>, shifts: Shifts<'p>, wants: Wants<'p>) -> Pass<'p>
+    pub(crate) fn pass<'p>(&self, lighting: Lighting<'p>, shifts: Shifts<'p>, wants: Wants<'p>) -> Pass<'p>
     where
         'a: 'p,
     {
@@ -299,7 +227,7 @@ impl<'a> Job<'a> {
     }
 
     /// Runs a pass over the whole picture as a stage of its own.
-    fn run_pass(&mut self, stage: Stage, pass: &Pass<'_>, merge: impl FnMut(&mut Canvas, TileResult)) {
+    pub(crate) fn run_pass(&mut self, stage: Stage, pass: &Pass<'_>, merge: impl FnMut(&mut Canvas, TileResult)) {
         let tiles = self.tiles();
         let station = if stage == Stage::FirstPass { Station::Place } else { Station::Gather };
         self.monitor.begin(stage, tiles.len() as u64);
@@ -308,7 +236,7 @@ impl<'a> Job<'a> {
     }
 
     /// With the original's draws, tiles are rows, so that its running sums come in its order.
-    fn tiles(&self) -> Vec<Tile> {
+    pub(crate) fn tiles(&self) -> Vec<Tile> {
         let (width, height) = (self.view.camera.width, self.view.camera.height);
         if self.draws.is_some() {
             (0..height).map(|j| Tile { i: 0, j, width, height: 1 }).collect()
@@ -317,7 +245,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    fn merge_tiles(
+    pub(crate) fn merge_tiles(
         &mut self,
         station: Station,
         pass: &Pass<'_>,
@@ -340,86 +268,4 @@ impl<'a> Job<'a> {
 fn bloom(crew: &mut Crew<'_>, bloom: &Bloom, sum: Image, monitor: &dyn Monitor) -> Image {
     let Bloom { enabled, radius, weight } = *bloom;
     if enabled { crew.run(Station::Develop, monitor, |device, _| device.bloom(&sum, radius, weight)) } else { sum }
-}
-
-/// The mean share of the VPLs that lit a shaded hit.
-struct LightRatio {
-    vpls: usize,
-    /// The original adds up float32 shares hit by hit, which loses some of the sum.
-    original_sum: Option<f32>,
-    selected: u64,
-    hits: u64,
-}
-
-impl LightRatio {
-    fn new(vpls: usize, original: bool) -> Self {
-        Self { vpls, original_sum: original.then_some(0.0), selected: 0, hits: 0 }
-    }
-
-    fn add(&mut self, result: &TileResult) {
-        let Some(sum) = &mut self.original_sum else {
-            self.selected += result.seen.iter().map(|seen| seen.selected).sum::<u64>();
-            self.hits += result.seen.iter().map(|seen| seen.shaded).sum::<u64>();
-            return;
-        };
-        for &selected in &result.selections {
-            *sum += selected as f32 / self.vpls as f32;
-            self.selected += u64::from(selected);
-        }
-        self.hits += result.selections.len() as u64;
-    }
-
-    fn percent(&self) -> f64 {
-        match self.original_sum {
-            _ if self.hits == 0 || self.vpls == 0 => 0.0,
-            Some(sum) => f64::from(sum / self.hits as f32) * 100.0,
-            None => self.selected as f64 / (self.hits as f64 * self.vpls as f64) * 100.0,
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Unwatched;
-    use crate::cpu::{Simd, select, select_exhaustively};
-    use crate::light_tree::TreeLayout;
-    use crate::light_tree::tests::chosen;
-    use lightcuts_import::{ImportOptions, load};
-    use lightcuts_testkit::{project_root, shared};
-
-    /// Every hit of every ray tree of the thesis' scenes: the bounded tree finds the set that testing every VPL finds.
-    #[test]
-    fn the_selected_set_is_exact_at_every_hit_of_the_three_scenes() {
-        let Some(models) = shared("models") else { return };
-        for name in ["simple", "venus", "galleon"] {
-            let options = ImportOptions { search_paths: vec![models.clone()], ..ImportOptions::default() };
-            let path = project_root().join(format!("scenes/thesis/{name}.txt"));
-            let scene = load(&path, &options).expect("the scene loads").scene;
-            let world = World::new(&scene).expect("the scene is sound");
-            let mut settings = Settings::for_scene(&scene);
-            settings.run.reproduce = true;
-            let (options, device) = (Options::default(), CpuDevice::new(&world, Simd::Auto));
-            let mut job = Job::new(&world, &settings, &options, &Stations::all(&device), &Unwatched);
-            let vpls = job.first_pass_original(OriginalDraws::new());
-            let tree = LightTree::build(&vpls, TreeLayout::Wide);
-            let mut draws = job.draws.expect("the job reproduces");
-            draws.skip_light_tree(vpls.len());
-            let shifts: Vec<[f32; 2]> = (0..512).flat_map(|_| draws.row(512)).collect();
-            let pass = job.pass(Lighting::Scene { occlusion: None }, Shifts::Given(&shifts), Wants::SurfacesAndHits);
-            let mut hits = Vec::new();
-            job.merge_tiles(Station::Place, &pass, &job.tiles(), |_, result| hits.extend(result.hits));
-            let (mut found, mut expected) = (Vec::new(), Vec::new());
-            for hit in &hits {
-                found.clear();
-                expected.clear();
-                let (point, threshold) = (hit.surface.point, settings.gather.threshold);
-                select(&tree, Simd::Auto.has_avx2(), point, threshold, &mut found);
-                select_exhaustively(&tree, &mut expected);
-                let sets = [&found, &expected].map(|candidates| chosen(&tree, candidates, point, threshold));
-                assert_eq!(sets[0], sets[1], "{name} at {point}");
-            }
-            println!("{name}: the sets of all {} hits are equal", hits.len());
-        }
-    }
 }

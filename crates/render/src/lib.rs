@@ -4,15 +4,18 @@
 //! for bit on any number of threads, with or without SIMD.
 
 mod cpu;
+mod crew;
 pub mod device;
 mod film;
 mod filter;
 mod job;
 mod light_node;
+mod light_ratio;
 mod light_tree;
 mod monitor;
 mod occlusion;
 mod original;
+mod original_pass;
 mod packed_tree;
 mod pass;
 mod photon_map;
@@ -33,7 +36,7 @@ pub use settings::{
     AmbientOcclusion, Bloom, Caustics, Display, Filter, FilterKind, Gather, ImageSize, Model, Run, Sampling, Settings,
     SettingsError, Strategy, TomlFault, ToneMappingKind, VplPlacement, overlay, value_at,
 };
-pub use stations::Stations;
+pub use stations::{PerStation, Station, Stations};
 pub use stats::{PassTime, Rays, StationDevice, Stats, TreeVisits};
 pub use vpl_csv::{VplCsvError, vpls_from_csv, vpls_to_csv};
 

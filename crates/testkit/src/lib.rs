@@ -2,7 +2,11 @@
 //!
 //! Other people's material is not part of the project; it may lie in a folder `shared` beside the checkout.
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
+
+/// If set, tests that need a graphics adapter fail where there is none; else they skip.
+const REQUIRED: &str = "LIGHTCUTS_REQUIRE_ADAPTER";
 
 /// The project's own files.
 pub fn project_root() -> PathBuf {
@@ -18,4 +22,13 @@ pub fn shared(path: &str) -> Option<PathBuf> {
         println!("skipped: shared material '{path}' is not here");
         None
     }
+}
+
+/// Whether an adapter was found; if not a line is printed, or the test fails where one is required.
+pub fn has_adapter<T>(found: Result<T, impl Error>) -> bool {
+    let Err(why) = found else { return true };
+    let is_required = std::env::var_os(REQUIRED).is_some_and(|value| !value.is_empty());
+    assert!(!is_required, "{REQUIRED} is set, but {why}");
+    println!("skipped: {why}");
+    false
 }

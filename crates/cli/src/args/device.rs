@@ -1,7 +1,8 @@
 //! Which device renders, as a whole and by stations; arguments of `devices`.
 
-use clap::{Args, ValueEnum};
-use lightcuts::gpu::{DeviceChoice, GpuOptions, PerStation};
+use clap::Args;
+use lightcuts::gpu::{DeviceChoice, GpuOptions};
+use lightcuts::{PerStation, Station};
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -56,16 +57,6 @@ pub(crate) struct DevicesArgs {
     pub(crate) json: bool,
 }
 
-/// A station as it is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Station {
-    Place,
-    Photons,
-    Tree,
-    Gather,
-    Develop,
-}
-
 /// A station with the device that it takes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct StationDevice {
@@ -76,18 +67,9 @@ struct StationDevice {
 impl DeviceArgs {
     /// What each station asks for; of two devices for one station the last counts.
     pub(crate) fn wanted(&self) -> PerStation<DeviceChoice> {
-        let mut wanted = PerStation::all(&self.device);
-        for StationDevice { station, device } in &self.station_device {
-            let seat = match station {
-                Station::Place => &mut wanted.place,
-                Station::Photons => &mut wanted.photons,
-                Station::Tree => &mut wanted.tree,
-                Station::Gather => &mut wanted.gather,
-                Station::Develop => &mut wanted.develop,
-            };
-            seat.clone_from(device);
-        }
-        wanted
+        let wanted = PerStation::all(self.device.clone());
+        let own = self.station_device.iter().cloned();
+        own.fold(wanted, |wanted, StationDevice { station, device }| wanted.with(station, device))
     }
 
     /// How a GPU is used.
@@ -101,11 +83,7 @@ impl FromStr for StationDevice {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (station, device) = text.split_once('=').ok_or("expected STATION=DEVICE, such as gather=gpu")?;
-        let names = Station::value_variants().iter().filter_map(ValueEnum::to_possible_value);
-        let names: Vec<String> = names.map(|value| value.get_name().to_owned()).collect();
-        let station = Station::from_str(station, false)
-            .map_err(|_| format!("`{station}` is no station; expected some of {}", names.join(", ")))?;
-        Ok(Self { station, device: choice(device)? })
+        Ok(Self { station: station.parse()?, device: choice(device)? })
     }
 }
 
@@ -138,7 +116,9 @@ mod tests {
     fn a_stations_own_device_counts_and_of_two_the_last() {
         let own = ["gather=cpu", "gather=gpu", "tree=x"].map(|text| text.parse().unwrap()).to_vec();
         let wanted = DeviceArgs { device: DeviceChoice::Auto, station_device: own, gpu_budget: 30 }.wanted();
-        assert_eq!((wanted.gather, wanted.tree), (DeviceChoice::Gpu, DeviceChoice::Named("x".to_owned())));
-        assert_eq!((wanted.place, wanted.develop), (DeviceChoice::Auto, DeviceChoice::Auto));
+        let named = DeviceChoice::Named("x".to_owned());
+        let expected =
+            PerStation::all(DeviceChoice::Auto).with(Station::Gather, DeviceChoice::Gpu).with(Station::Tree, named);
+        assert_eq!(wanted, expected);
     }
 }

@@ -3,15 +3,15 @@
 use super::list::why_no_gpu;
 use crate::args::DeviceArgs;
 use crate::exit::Failure;
-use lightcuts::gpu::{self, AdapterSummary, Assignment, DeviceChoice, Fleet, NoDevice, PerStation};
-use lightcuts::{Monitor, Simd, World};
+use lightcuts::gpu::{self, AdapterSummary, Assignment, DeviceChoice, Fleet, NoDevice};
+use lightcuts::{Monitor, PerStation, Simd, World};
 
 /// Which adapters the stations take. Fails if one that was asked for is not there.
 pub(crate) fn assigned(args: &DeviceArgs) -> Result<Assignment, Failure> {
     let wanted = args.wanted();
     let adapters = gpu::adapters_for(&wanted);
     let assignment = Assignment::new(&wanted, &adapters).map_err(|why| not_there(&why, &adapters))?;
-    if !assignment.takes_adapters() && wanted != PerStation::all(&DeviceChoice::Cpu) {
+    if !assignment.takes_adapters() && wanted != PerStation::all(DeviceChoice::Cpu) {
         tracing::info!("no GPU: the CPU renders; {}", why_no_gpu(&adapters));
     }
     Ok(assignment)

@@ -71,7 +71,7 @@ mod tests {
             "GPU          Old Card\n",
             "graphics card; Vulkan, driver driver 1.2",
             "buffers of 2 GiB at most, of which a program sees 128 MiB",
-            "16 buffers per program, 1024 invocations per workgroup, 8 to 32 in step",
+            "10 buffers per program, 256 invocations per workgroup, 8 to 32 in step",
             "times its own work; cannot be used: it has 4 buffers",
             "software GPU llvmpipe\n",
             "times its own work; can be used",

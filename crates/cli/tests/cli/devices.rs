@@ -4,20 +4,9 @@ use crate::support::{Folder, stderr, stdout};
 use lightcuts::gpu::{DeviceChoice, adapters, choose};
 use serde_json::Value;
 
-/// If set, tests fail where there is no adapter; else they skip.
-const REQUIRED: &str = "LIGHTCUTS_REQUIRE_ADAPTER";
-
-/// Whether there is an adapter; without one a line is printed, or the test fails where one is required.
+/// Whether there is an adapter.
 fn has_adapter() -> bool {
-    match choose(&DeviceChoice::Gpu, &adapters()) {
-        Ok(_) => true,
-        Err(why) => {
-            let is_required = std::env::var_os(REQUIRED).is_some_and(|value| !value.is_empty());
-            assert!(!is_required, "{REQUIRED} is set, but {why}");
-            println!("skipped: {why}");
-            false
-        }
-    }
+    lightcuts_testkit::has_adapter(choose(&DeviceChoice::Gpu, &adapters()))
 }
 
 /// What a command says on standard output and error where no driver is found, and its exit code.

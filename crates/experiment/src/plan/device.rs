@@ -1,7 +1,8 @@
 //! Devices of configurations: what is asked for, and whether it can be had.
 
 use super::file::Document;
-use lightcuts::gpu::{AdapterSummary, Assignment, DeviceChoice, PerStation, adapters_for};
+use lightcuts::PerStation;
+use lightcuts::gpu::{AdapterSummary, Assignment, DeviceChoice, adapters_for};
 use serde::{Deserialize, Deserializer};
 
 /// Whether each configuration has a device on this machine, by its number in the file.
@@ -13,7 +14,7 @@ pub(super) struct Devices {
 
 impl Devices {
     pub(super) fn new(document: &Document, adapters: &[AdapterSummary]) -> Self {
-        let absent = |choice: &DeviceChoice| Assignment::new(&PerStation::all(choice), adapters).err();
+        let absent = |choice: &DeviceChoice| Assignment::new(&PerStation::all(choice.clone()), adapters).err();
         let tables = document.configuration.iter();
         Self { absent: tables.map(|table| absent(&table.device).map(|why| why.to_string())).collect() }
     }
@@ -27,7 +28,7 @@ impl Devices {
 /// The adapters of this machine, as far as a document needs to know them.
 pub(super) fn adapters(document: &Document) -> Vec<AdapterSummary> {
     let needs_adapters = document.configuration.iter().any(|table| table.device != DeviceChoice::Cpu);
-    adapters_for(&PerStation::all(if needs_adapters { &DeviceChoice::Gpu } else { &DeviceChoice::Cpu }))
+    adapters_for(&PerStation::all(if needs_adapters { DeviceChoice::Gpu } else { DeviceChoice::Cpu }))
 }
 
 /// The key `device`: any text is a choice.

@@ -3,8 +3,8 @@
 use super::{RunError, Watch};
 use crate::plan::{Plan, PlannedJob};
 use lightcuts::device::DeviceKind;
-use lightcuts::gpu::{Assignment, DeviceChoice, Fleet, GpuOptions, PerStation};
-use lightcuts::{Monitor, Options, Simd, World};
+use lightcuts::gpu::{Assignment, DeviceChoice, Fleet, GpuOptions};
+use lightcuts::{Monitor, Options, PerStation, Simd, World};
 use std::collections::BTreeSet;
 
 /// Open devices, with the world of a scene on each.
@@ -39,7 +39,7 @@ impl<'w> Devices<'w> {
     }
 
     fn open(&self, job: &PlannedJob, world: &'w World, watch: &dyn Watch) -> Result<Fleet<'w>, RunError> {
-        let assignment = Assignment::new(&PerStation::all(&job.device), &self.plan.adapters);
+        let assignment = Assignment::new(&PerStation::all(job.device.clone()), &self.plan.adapters);
         let options = GpuOptions::default();
         let open = |assignment| Fleet::open(&assignment, world, Simd::Auto, &options, &|text| watch.note(text));
         assignment.and_then(open).map_err(|why| RunError::Device {

@@ -5,7 +5,7 @@ use lightcuts_gpu::{GpuDevice, GpuOptions};
 use lightcuts_image::max_abs_difference;
 use lightcuts_kernel::light::Vpl;
 use lightcuts_render::device::{CpuDevice, Device};
-use lightcuts_render::{Rendering, Settings, Simd, Stations};
+use lightcuts_render::{Rendering, Settings, Simd, Station, Stations};
 use lightcuts_world::World;
 
 /// A VPL whose colour is so near to the least one may be chosen on one device only.
@@ -22,14 +22,11 @@ fn prepared() -> (World, Settings) {
 
 /// Every way to put one station alone on the GPU, and all but one.
 fn mixtures<'a>(cpu: &'a CpuDevice<'a>, gpu: &'a GpuDevice<'a>) -> Vec<(String, Stations<'a>)> {
-    let names = ["place", "photons", "tree", "gather", "develop"];
     let mut mixtures = Vec::new();
     for (few, many) in [(gpu as &dyn Device, cpu as &dyn Device), (cpu, gpu)] {
-        for (k, name) in names.into_iter().enumerate() {
-            let pick = |station: usize| if station == k { few } else { many };
-            let stations =
-                Stations { place: pick(0), photons: pick(1), tree: pick(2), gather: pick(3), develop: pick(4) };
-            mixtures.push((format!("{name} on the {:?} alone", few.info().kind), stations));
+        for station in Station::ALL {
+            let what = format!("{} on the {:?} alone", station.name(), few.info().kind);
+            mixtures.push((what, Stations::all(many).with(station, few)));
         }
     }
     mixtures

@@ -7,7 +7,7 @@ use lightcuts_render::device::{
     CpuDevice, Device, DeviceFault, DeviceInfo, DeviceKind, LightTree, Pass, PhotonMap, Shifts, Tile, TileResult,
     TreeLayout, View,
 };
-use lightcuts_render::{Caustics, Monitor, Options, Rendering, Settings, Simd, Stage, Stations, render_on};
+use lightcuts_render::{Caustics, Monitor, Options, Rendering, Settings, Simd, Stage, Station, Stations, render_on};
 use lightcuts_world::World;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
@@ -227,7 +227,7 @@ fn stations_on_other_devices_go_on_there_when_one_device_is_gone() {
     let (expected, _) = render_noting(&world, &settings, &Stations::all(&cpu));
     let sound = Fake::new(&world);
     let gone = Fake { can_be_revived: false, ..Fake::faulting(&world, [0]) };
-    let stations = Stations { tree: &gone, develop: &gone, ..Stations::all(&sound) };
+    let stations = Stations::all(&sound).with(Station::Tree, &gone).with(Station::Develop, &gone);
     let (rendering, notes) = render_noting(&world, &settings, &stations);
     assert_same_picture(&expected, &rendering, "two devices");
     assert_eq!((notes.len(), gone.calls()), (1, vec!["tree"]));
@@ -254,7 +254,7 @@ fn shifts_given_beforehand_reproduce_the_original() {
     let (world, mut settings) = scene("thesis/simple.txt", Vec::new());
     settings.run.reproduce = true;
     let by_rows = Fake { tiles_at_once: 64, ..Fake::new(&world) };
-    let stations = Stations { gather: &by_rows.cpu, ..Stations::all(&by_rows) };
+    let stations = Stations::all(&by_rows).with(Station::Gather, &by_rows.cpu);
     let (expected, _) = render_noting(&world, &settings, &stations);
     assert_eq!((expected.vpls.len(), by_rows.calls()[0]), (290, "shifts"));
     let shifts = by_rows.seen_shifts.into_inner().unwrap();
