@@ -1,7 +1,7 @@
 //! From dispatches to submissions: collected while they fit into the governor's plan, timed, and learnt from.
 
 use crate::context::{Buffer, Context, Kernel, MAX_PARAMS};
-use crate::governor::{Governor, StageName};
+use crate::governor::{Governor, Work};
 use lightcuts_render::device::DeviceFault;
 use std::time::{Duration, Instant};
 
@@ -26,7 +26,7 @@ pub(crate) struct Dispatcher {
 }
 
 struct Pending {
-    stage: StageName,
+    work: Work,
     units: f64,
     expected_s: f64,
 }
@@ -68,8 +68,8 @@ impl Dispatcher {
         if items == 0 {
             return Ok(());
         }
-        let stage = kernel.entry;
-        let expected_s = self.governor.expected(stage, units);
+        let work = self.governor.work(kernel.entry);
+        let expected_s = self.governor.expected(work, units);
         let is_full = self.expected_s + expected_s > self.governor.planned() || self.pending.len() == MAX_PENDING;
         if is_full && !self.pending.is_empty() {
             self.flush(context)?;
@@ -79,7 +79,7 @@ impl Dispatcher {
         let number = self.pending.len() as u32;
         let encoder = Self::encoder(&mut self.encoder, context);
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(stage),
+            label: Some(kernel.entry),
             timestamp_writes: self.clock.as_ref().map(|clock| wgpu::ComputePassTimestampWrites {
                 query_set: &clock.queries,
                 beginning_of_pass_write_index: Some(2 * number),
@@ -90,7 +90,7 @@ impl Dispatcher {
         pass.set_bind_group(0, &group, &[offset]);
         pass.dispatch_workgroups(items.div_ceil(kernel.program.workgroup), 1, 1);
         drop(pass);
-        self.pending.push(Pending { stage, units, expected_s });
+        self.pending.push(Pending { work, units, expected_s });
         self.expected_s += expected_s;
         Ok(())
     }
@@ -170,11 +170,11 @@ impl Dispatcher {
         if let Some((of_all, _)) = &timed {
             seconds = *of_all;
         }
-        for (number, Pending { stage, units, expected_s: part }) in pending.into_iter().enumerate() {
+        for (number, Pending { work, units, expected_s: part }) in pending.into_iter().enumerate() {
             // Without timestamps the whole is shared out in proportion to what was expected.
             let of_one =
                 timed.as_ref().map_or(seconds * part / expected_s.max(f64::MIN_POSITIVE), |(_, of)| of[number]);
-            self.governor.learn(stage, units, of_one);
+            self.governor.learn(work, units, of_one);
         }
         self.governor.finish(began_s, seconds);
         Ok(())

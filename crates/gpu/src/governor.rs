@@ -12,17 +12,39 @@ const PLANNED_SHARE: f64 = 0.5;
 const FIRST_COST: f64 = 4e-6;
 /// A cost falls at most to this share of what it was before: a submission is at most twice as large as the one before.
 const GREATEST_FALL: f64 = 0.5;
+/// The same once a submission came near what was planned. What was cheap then says little of what comes next: camera rays
+/// into the sky cost almost nothing until the next tile shows the scene.
+const GREATEST_FALL_SETTLED: f64 = 0.95;
+/// Share of the plan from which on a cost is settled.
+const SETTLED_SHARE: f64 = 0.5;
 /// Seconds of the first bin of the histogram; each bin ends at twice the one before.
 const FIRST_BIN: f64 = 0.000_25;
 
 /// A stage's name: that of its program.
 pub(crate) type StageName = &'static str;
 
+/// What costs are learnt apart for: many a mirrored or refracted ray meets nothing, so the deeper layers of ray trees say
+/// nothing of the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Work {
+    pub(crate) stage: StageName,
+    is_deep: bool,
+}
+
+/// What a unit of some work costs.
+#[derive(Debug, Clone, Copy)]
+struct Cost {
+    seconds: f64,
+    is_settled: bool,
+}
+
 /// Learns what work costs and says how much of it fits.
 #[derive(Debug, Clone)]
 pub(crate) struct Governor {
     budget_s: f64,
-    costs: BTreeMap<StageName, f64>,
+    costs: BTreeMap<Work, Cost>,
+    /// Whether the work at hand is in a deeper layer than the first.
+    pub(crate) is_deep: bool,
     pub(crate) report: GovernorReport,
 }
 
@@ -60,17 +82,26 @@ impl Governor {
     pub(crate) fn new(budget: Duration) -> Self {
         let budget_s = budget.as_secs_f64();
         let report = GovernorReport { budget_s, ..GovernorReport::default() };
-        Self { budget_s, costs: BTreeMap::new(), report }
+        Self { budget_s, costs: BTreeMap::new(), is_deep: false, report }
     }
 
-    /// Seconds that some units of a stage are expected to take.
-    pub(crate) fn expected(&self, stage: StageName, units: f64) -> f64 {
-        self.costs.get(stage).copied().unwrap_or(FIRST_COST) * units
+    /// A stage in the layer at hand.
+    pub(crate) fn work(&self, stage: StageName) -> Work {
+        Work { stage, is_deep: self.is_deep }
+    }
+
+    /// Seconds that some units of work are expected to take.
+    pub(crate) fn expected(&self, work: Work, units: f64) -> f64 {
+        self.cost(work).seconds * units
     }
 
     /// Units of a stage that a submission may hold.
     pub(crate) fn allowance(&self, stage: StageName) -> f64 {
-        self.planned() / self.costs.get(stage).copied().unwrap_or(FIRST_COST)
+        self.planned() / self.cost(self.work(stage)).seconds
+    }
+
+    fn cost(&self, work: Work) -> Cost {
+        self.costs.get(&work).copied().unwrap_or(Cost { seconds: FIRST_COST, is_settled: false })
     }
 
     /// Seconds that a submission is planned for.
@@ -78,14 +109,16 @@ impl Governor {
         self.budget_s * PLANNED_SHARE
     }
 
-    /// Takes note of a stage's part of a submission.
-    pub(crate) fn learn(&mut self, stage: StageName, units: f64, seconds: f64) {
-        let stages = self.report.stages.entry(stage).or_default();
+    /// Takes note of what a part of a submission took.
+    pub(crate) fn learn(&mut self, work: Work, units: f64, seconds: f64) {
+        let stages = self.report.stages.entry(work.stage).or_default();
         stages.seconds += seconds;
         stages.dispatches += 1;
         if units > 0.0 && seconds.is_finite() {
-            let before = self.costs.get(stage).copied().unwrap_or(FIRST_COST);
-            self.costs.insert(stage, (seconds / units).max(before * GREATEST_FALL));
+            let before = self.cost(work);
+            let is_settled = before.is_settled || seconds >= self.planned() * SETTLED_SHARE;
+            let fall = if is_settled { GREATEST_FALL_SETTLED } else { GREATEST_FALL };
+            self.costs.insert(work, Cost { seconds: (seconds / units).max(before.seconds * fall), is_settled });
         }
     }
 
@@ -134,7 +167,7 @@ mod tests {
         while units > 0.0 {
             let part = governor.allowance("work").max(1.0).min(units);
             let seconds = part * cost(done);
-            governor.learn("work", part, seconds);
+            governor.learn(governor.work("work"), part, seconds);
             governor.finish(0.0, seconds);
             durations.push(seconds);
             units -= part;
@@ -148,13 +181,31 @@ mod tests {
         let durations = run(1e9, |_| 1e-9);
         assert!(durations.len() < 90, "{}", durations.len());
         assert!(durations.iter().all(|&s| s < 0.0151));
-        assert!(durations[20] > 0.014);
+        assert!(durations[30] > 0.014);
     }
 
     #[test]
     fn work_that_gets_four_times_as_expensive_stays_within_twice_the_budget() {
         let durations = run(1e6, |done| if (done as u64 / 30_000).is_multiple_of(2) { 1e-6 } else { 4e-6 });
         assert!(durations.iter().all(|&s| s <= 0.060_001), "{durations:?}");
+    }
+
+    #[test]
+    fn a_while_of_cheap_work_misleads_nobody() {
+        let durations = run(1e6, |done| if (done as u64 / 60_000).is_multiple_of(2) { 4e-6 } else { 1e-7 });
+        let beyond = durations.iter().filter(|&&s| s > 0.060_001).count();
+        assert_eq!(beyond, 0, "{durations:?}");
+    }
+
+    #[test]
+    fn layers_are_learnt_apart() {
+        let mut governor = Governor::new(Duration::from_millis(30));
+        governor.learn(governor.work("work"), 1000.0, 0.01);
+        governor.is_deep = true;
+        governor.learn(governor.work("work"), 1000.0, 1e-6);
+        assert!(governor.allowance("work") > 2000.0);
+        governor.is_deep = false;
+        assert!((governor.allowance("work") - 1500.0).abs() < 1e-6);
     }
 
     #[test]

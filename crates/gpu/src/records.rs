@@ -115,7 +115,7 @@ records! {
     /// Parameters of prefix sums.
     ScanParams { count: u32, padding0: u32, padding1: u32, padding2: u32 }
     /// Parameters of the radix sort.
-    SortParams { count: u32, shift: u32, groups: u32, padding: u32 }
+    SortParams { count: u32, shift: u32, groups: u32, first_group: u32 }
     /// Parameters of the programs that build a light tree.
     TreeParams {
         lower: Vec3, first: u32, extent: Vec3, count: u32, vpl_count: u32, level: u32, padding0: u32, padding1: u32

@@ -1,5 +1,6 @@
 //! Light trees on the device: built there, or brought there.
 
+use crate::context::Buffer;
 use crate::engine::Engine;
 use crate::records::{SortParams, TreeParams};
 use lightcuts_kernel::light::Vpl;
@@ -49,11 +50,11 @@ impl Engine {
         })?;
         let groups = count.div_ceil(SORT_BLOCK);
         for shift in (0..KEY_BITS).step_by(DIGIT_BITS as usize) {
-            let params = SortParams { count, shift, groups, padding: 0 };
+            let params = SortParams { count, shift, groups, first_group: 0 };
             let buffers = [("pairs_in", &from), ("pairs_out", &to)];
-            self.run_with("count_digits", &params, groups * SORT_BLOCK, f64::from(count), &buffers)?;
+            self.over_groups("count_digits", &params, &buffers)?;
             self.scan_pending(groups << DIGIT_BITS)?;
-            self.run_with("scatter", &params, groups * SORT_BLOCK, f64::from(count), &buffers)?;
+            self.over_groups("scatter", &params, &buffers)?;
             (from, to) = (to, from);
         }
         // An even number of rounds ends where it began.
@@ -67,6 +68,20 @@ impl Engine {
         })?;
         self.rename("vpls", sorted);
         Ok(())
+    }
+
+    /// A program of the radix sort over all groups.
+    fn over_groups(
+        &mut self,
+        entry: &'static str,
+        params: &SortParams,
+        buffers: &[(&str, &Buffer)],
+    ) -> Result<(), DeviceFault> {
+        self.over(entry, params.groups, f64::from(SORT_BLOCK), |engine, first_group, groups| {
+            let params = SortParams { first_group, ..*params };
+            let pairs = groups * SORT_BLOCK;
+            engine.run_with(entry, &params, pairs, f64::from(pairs), buffers)
+        })
     }
 
     fn build_levels(&mut self, count: u32, leaves: u32) -> Result<(), DeviceFault> {

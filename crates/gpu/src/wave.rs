@@ -190,17 +190,22 @@ impl Engine {
         let mut layers = vec![Layer { first: 0, count: samples }];
         for depth in 1..=pass.view.max_depth {
             let Some(&layer) = layers.last() else { break };
+            self.dispatcher.governor.is_deep = depth > 1;
             self.over_layer("trace", layer, pass)?;
             self.light(pass, layer, monitor)?;
             if depth == pass.view.max_depth || !self.has_children || monitor.cancelled() {
                 break;
             }
             match self.spawn(layer, rules)? {
-                None => return Ok(None),
+                None => {
+                    self.dispatcher.governor.is_deep = false;
+                    return Ok(None);
+                }
                 Some(next) if next.count == 0 => break,
                 Some(next) => layers.push(next),
             }
         }
+        self.dispatcher.governor.is_deep = false;
         Ok(Some(layers))
     }
 

@@ -3,7 +3,7 @@ struct SortParams {
     count: u32,
     shift: u32,
     groups: u32,
-    padding: u32,
+    first_group: u32,
 }
 
 const SORT_THREADS: u32 = 256u;
@@ -24,7 +24,8 @@ fn count_digits(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let n = group.x * SORT_THREADS + lane;
+    let part = params.first_group + group.x;
+    let n = part * SORT_THREADS + lane;
     if (lane < DIGITS) {
         atomicStore(&digit_counts[lane], 0u);
     }
@@ -34,7 +35,7 @@ fn count_digits(
     }
     workgroupBarrier();
     if (lane < DIGITS) {
-        words[lane * params.groups + group.x] = atomicLoad(&digit_counts[lane]);
+        words[lane * params.groups + part] = atomicLoad(&digit_counts[lane]);
     }
 }
 
@@ -44,8 +45,9 @@ fn scatter(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let n = group.x * SORT_THREADS + lane;
-    let size = min(SORT_THREADS, params.count - group.x * SORT_THREADS);
+    let part = params.first_group + group.x;
+    let n = part * SORT_THREADS + lane;
+    let size = min(SORT_THREADS, params.count - part * SORT_THREADS);
     var pair = vec2<u32>(0xffffffffu);
     if (n < params.count) {
         pair = pairs_in[n];
@@ -81,6 +83,6 @@ fn scatter(
     }
     workgroupBarrier();
     if (is_here) {
-        pairs_out[words[digit * params.groups + group.x] + lane - digit_starts[digit]] = pair;
+        pairs_out[words[digit * params.groups + part] + lane - digit_starts[digit]] = pair;
     }
 }
