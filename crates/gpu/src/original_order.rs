@@ -30,7 +30,7 @@ impl Engine {
         }
         for n in ordered {
             let (link, found) = (&links[n as usize], &surfaces[n as usize]);
-            let object = pass.view.world.primitives[found.primitive as usize].object;
+            let object = pass.view.world.shapes.primitives[found.primitive as usize].object;
             let NodeSurface { point, normal, material, epsilon, .. } = *found;
             results[input.tile_of(link.sample)].hits.push(TreeHit {
                 slot: link.slot,

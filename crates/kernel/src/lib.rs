@@ -3,13 +3,23 @@
 //! Nothing here does I/O, allocates, fails or holds a trait object: degenerate input contributes zero, never NaN. A file
 //! belongs here if and only if it has a WGSL twin of the same stem, or stands on [`TWINS_TO_COME`].
 
+pub mod bsdf;
 pub mod camera;
 pub mod cwbvh;
+pub mod dielectric;
+pub mod emitter;
+pub mod emitter_tree;
+pub mod energy;
+pub mod environment;
 pub mod filter;
+pub mod fresnel;
+pub mod ggx;
 pub mod intersect;
+pub mod lens;
 pub mod light;
 pub mod light_tree;
 pub mod material;
+pub mod mip;
 pub mod optics;
 pub mod packed_tree;
 pub mod phong;
@@ -20,6 +30,7 @@ pub mod ray;
 pub mod rng;
 pub mod rules;
 pub mod sampling;
+pub mod scatter;
 pub mod surface;
 pub mod texture;
 pub mod vector;
@@ -28,7 +39,19 @@ pub mod wgsl;
 pub use rules::Rules;
 
 /// The modules whose WGSL twins are still to be written, by file stem.
-pub const TWINS_TO_COME: [&str; 0] = [];
+pub const TWINS_TO_COME: [&str; 11] = [
+    "bsdf",
+    "dielectric",
+    "emitter",
+    "emitter_tree",
+    "energy",
+    "environment",
+    "fresnel",
+    "ggx",
+    "lens",
+    "mip",
+    "scatter",
+];
 
 #[cfg(test)]
 mod tests {

@@ -139,7 +139,7 @@ impl Walk<'_> {
             if !hit.is_some() {
                 continue;
             }
-            let surface = surface_at(&self.world.surfaces(), &ray, &hit);
+            let surface = surface_at(&self.world.shapes.surfaces(), &ray, &hit);
             if bounces == 0 && surface.object != target.object {
                 continue;
             }

@@ -76,7 +76,7 @@ impl<'a> Shader<'a> {
         *if secondary { &mut self.rays.secondary } else { &mut self.rays.primary } += 1;
         let hit = self.tracer.closest(ray);
         hit.is_some().then(|| {
-            let surface = surface_at(&self.world.surfaces(), ray, &hit);
+            let surface = surface_at(&self.world.shapes.surfaces(), ray, &hit);
             let material = self.world.materials[surface.material as usize];
             Found { hit, surface, material, epsilon: spawn_epsilon(self.tracer.rules, surface.point, hit.t) }
         })
@@ -117,7 +117,7 @@ impl<'a> Shader<'a> {
             }
         }
         if lit && material.texture != NONE {
-            let surfaces = self.world.surfaces();
+            let surfaces = self.world.shapes.surfaces();
             let at = surface_point(&surfaces, hit, surface);
             let texture = &self.world.textures[material.texture as usize];
             color += sample_texture(&self.world.texels, texture, material.texture_mode, &at, rules);

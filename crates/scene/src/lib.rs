@@ -8,6 +8,7 @@ mod defaults;
 mod light;
 mod material;
 mod object;
+pub mod physical;
 mod validate;
 
 pub use camera::{CameraDesc, Projection, SamplerKind};

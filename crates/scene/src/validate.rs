@@ -23,6 +23,8 @@ pub enum Subject {
     Scene,
     /// The camera.
     Camera,
+    /// The environment.
+    Environment,
     /// A light.
     Light(usize),
     /// An object.
@@ -40,6 +42,7 @@ impl fmt::Display for Subject {
         match self {
             Self::Scene => write!(f, "the scene"),
             Self::Camera => write!(f, "the camera"),
+            Self::Environment => write!(f, "the environment"),
             Self::Light(i) => write!(f, "light {}", i + 1),
             Self::Object(i) => write!(f, "object {}", i + 1),
             Self::Material(i) => write!(f, "material {}", i + 1),
@@ -65,7 +68,7 @@ impl SceneDesc {
     /// Checks everything that rendering relies on and returns all issues, in scene order. An empty list means that
     /// every number is finite and in range, every direction has a length and every index points at something.
     pub fn validate(&self) -> Vec<Issue> {
-        let mut check = Check { issues: Vec::new(), subject: Subject::Scene };
+        let mut check = Check::new();
         check.color("background", self.background);
         check.subject = Subject::Camera;
         self.validate_camera(&mut check);
@@ -125,42 +128,46 @@ impl SceneDesc {
 }
 
 /// Collects the issues of one subject after the other.
-struct Check {
-    issues: Vec<Issue>,
-    subject: Subject,
+pub(crate) struct Check {
+    pub(crate) issues: Vec<Issue>,
+    pub(crate) subject: Subject,
 }
 
 impl Check {
-    fn issue(&mut self, field: &'static str, message: impl Into<String>) {
+    pub(crate) fn new() -> Self {
+        Self { issues: Vec::new(), subject: Subject::Scene }
+    }
+
+    pub(crate) fn issue(&mut self, field: &'static str, message: impl Into<String>) {
         self.issues.push(Issue { subject: self.subject, field, message: message.into() });
     }
 
-    fn factor(&mut self, field: &'static str, value: f32) {
+    pub(crate) fn factor(&mut self, field: &'static str, value: f32) {
         if !(0.0..=MAX_FACTOR).contains(&value) {
             self.issue(field, format!("is {value}; expected a number from 0 to {MAX_FACTOR:e}"));
         }
     }
 
-    fn color(&mut self, field: &'static str, value: Vec3) {
+    pub(crate) fn color(&mut self, field: &'static str, value: Vec3) {
         if !value.to_array().iter().all(|c| (0.0..=MAX_FACTOR).contains(c)) {
             self.issue(field, format!("is {value}; expected three numbers from 0 to {MAX_FACTOR:e}"));
         }
     }
 
-    fn point(&mut self, field: &'static str, value: Vec3) {
+    pub(crate) fn point(&mut self, field: &'static str, value: Vec3) {
         if !value.to_array().iter().all(|c| c.abs() <= MAX_COORDINATE) {
             self.issue(field, format!("is {value}; expected coordinates of at most {MAX_COORDINATE:e} in magnitude"));
         }
     }
 
-    fn length(&mut self, field: &'static str, value: f32) {
+    pub(crate) fn length(&mut self, field: &'static str, value: f32) {
         if !(value > 0.0 && value <= MAX_COORDINATE) {
             self.issue(field, format!("is {value}; expected a length above 0 and at most {MAX_COORDINATE:e}"));
         }
     }
 
     /// Whether `value` can be normalised.
-    fn direction(&mut self, field: &'static str, value: Vec3) -> bool {
+    pub(crate) fn direction(&mut self, field: &'static str, value: Vec3) -> bool {
         let good =
             value.to_array().iter().all(|c| c.abs() <= MAX_COORDINATE) && value.length_squared() >= MIN_DIRECTION_SQ;
         if !good {
@@ -169,7 +176,7 @@ impl Check {
         good
     }
 
-    fn frame(&mut self, (first_field, first): (&'static str, Vec3), (field, second): (&'static str, Vec3)) {
+    pub(crate) fn frame(&mut self, (first_field, first): (&'static str, Vec3), (field, second): (&'static str, Vec3)) {
         if self.direction(first_field, first) & self.direction(field, second)
             && first.normalize().cross(second.normalize()).length_squared() < MIN_DIRECTION_SQ
         {
@@ -177,7 +184,7 @@ impl Check {
         }
     }
 
-    fn index(&mut self, field: &'static str, index: u32, count: usize) {
+    pub(crate) fn index(&mut self, field: &'static str, index: u32, count: usize) {
         if index as usize >= count {
             self.issue(field, format!("is number {index}, but there are {count}"));
         }
@@ -249,7 +256,7 @@ impl Check {
         }
     }
 
-    fn mesh(&mut self, mesh: &MeshDesc, materials: usize) {
+    pub(crate) fn mesh(&mut self, mesh: &MeshDesc, materials: usize) {
         let finite = |v: &Vec3| v.to_array().iter().all(|c| c.abs() <= MAX_COORDINATE);
         if let Some(i) = mesh.positions.iter().position(|p| !finite(p)) {
             self.issue("positions", format!("hold {} at vertex {}", mesh.positions[i], i + 1));

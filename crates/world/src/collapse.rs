@@ -15,7 +15,7 @@ const EMPTY_NODE: BvhNode =
     BvhNode { lower: [[f32::INFINITY; LANES]; 3], upper: [[f32::NEG_INFINITY; LANES]; 3], child: [u32::MAX; LANES] };
 
 /// Builds the hierarchy over everything in the builder. `reach` is the camera's largest coordinate.
-pub(crate) fn build(builder: &Builder<'_>, reach: f32) -> (Vec<BvhNode>, Vec<TriangleBlock>) {
+pub(crate) fn build(builder: &Builder, reach: f32) -> (Vec<BvhNode>, Vec<TriangleBlock>) {
     let extent = builder.boxes.iter().fold(reach, |m, (a, b)| m.max(a.abs().max_element()).max(b.abs().max_element()));
     let padding = Vec3::splat(extent * PADDING);
     let boxes: Vec<(Vec3, Vec3)> = builder.boxes.iter().map(|&(a, b)| (a - padding, b + padding)).collect();
@@ -30,7 +30,7 @@ pub(crate) fn build(builder: &Builder<'_>, reach: f32) -> (Vec<BvhNode>, Vec<Tri
 }
 
 /// Number of triangles under each binary node, or `None` where other primitives lie under it too.
-fn triangle_counts(binary: &[BinaryNode], builder: &Builder<'_>) -> Vec<Option<u32>> {
+fn triangle_counts(binary: &[BinaryNode], builder: &Builder) -> Vec<Option<u32>> {
     let mut counts = vec![None; binary.len()];
     for (i, node) in binary.iter().enumerate().rev() {
         counts[i] = match node.content {
@@ -46,7 +46,7 @@ fn triangle_counts(binary: &[BinaryNode], builder: &Builder<'_>) -> Vec<Option<u
 struct Collapse<'a> {
     binary: &'a [BinaryNode],
     sizes: &'a [Option<u32>],
-    builder: &'a Builder<'a>,
+    builder: &'a Builder,
     nodes: Vec<BvhNode>,
     blocks: Vec<TriangleBlock>,
 }

@@ -30,7 +30,7 @@ impl CompressedHierarchy {
     /// Builds the hierarchy over everything that rays can hit.
     pub fn new(world: &World) -> Self {
         let items = items(world);
-        let corners = |item: &LeafItem| bounds(item, &world.squares);
+        let corners = |item: &LeafItem| bounds(item, &world.shapes.squares);
         let reach = world.view.center.abs().max_element();
         let extent = items.iter().map(corners).fold(reach, |m, (a, b)| m.max(a.abs().max(b.abs()).max_element()));
         let padding = Vec3::splat(extent * PADDING);
@@ -49,7 +49,7 @@ impl CompressedHierarchy {
 }
 
 fn items(world: &World) -> Vec<LeafItem> {
-    let lanes = world.triangles.iter().flat_map(|block| (0..LANES).map(move |lane| block.triangle(lane)));
+    let lanes = world.shapes.triangles.iter().flat_map(|block| (0..LANES).map(move |lane| block.triangle(lane)));
     let triangles = lanes.filter(|triangle| triangle.primitive != NONE).map(|triangle| LeafItem {
         a: triangle.corner,
         primitive: triangle.primitive,
@@ -58,7 +58,7 @@ fn items(world: &World) -> Vec<LeafItem> {
         c: triangle.edge2,
         index: 0,
     });
-    let spheres = world.spheres.iter().map(|sphere| LeafItem {
+    let spheres = world.shapes.spheres.iter().map(|sphere| LeafItem {
         a: sphere.center,
         primitive: sphere.primitive,
         b: Vec3::X * sphere.radius,
@@ -66,7 +66,7 @@ fn items(world: &World) -> Vec<LeafItem> {
         c: Vec3::ZERO,
         index: 0,
     });
-    let squares = world.squares.iter().zip(0..).map(|(square, index)| LeafItem {
+    let squares = world.shapes.squares.iter().zip(0..).map(|(square, index)| LeafItem {
         a: square.center,
         primitive: square.primitive,
         b: Vec3::ZERO,
@@ -160,7 +160,7 @@ mod tests {
             let imported = load(&path, &ImportOptions::default()).expect("the project's own scene loads");
             let world = World::new(&imported.scene).expect("the scene is sound");
             let hierarchy = CompressedHierarchy::new(&world);
-            let (compressed, plain) = (hierarchy.geometry(&world.squares), world.geometry());
+            let (compressed, plain) = (hierarchy.geometry(&world.shapes.squares), world.shapes.geometry());
             let mut hits = 0;
             for k in 0..10_000 {
                 let [a, b, c, d] = random4(k, 0, 0, 17);

@@ -8,20 +8,21 @@ mod collapse;
 mod compressed;
 mod lights;
 mod mesh;
+pub mod physical;
 mod shapes;
+mod thesis;
 mod validate;
 
 pub use compressed::CompressedHierarchy;
+pub use physical::PhysicalWorld;
+pub use shapes::Shapes;
 pub use validate::Defect;
 
-use bvh::{BvhNode, Geometry, TriangleBlock};
 use glam::Vec3;
 use lightcuts_kernel::camera::{Camera, PIXEL_PITCH, THESIS_SIZE};
-use lightcuts_kernel::intersect::{Sphere, Square};
 use lightcuts_kernel::light::Light;
 use lightcuts_kernel::material::Material;
 use lightcuts_kernel::ray::{NONE, normalize_or_zero};
-use lightcuts_kernel::surface::{Primitive, Surfaces, TriangleCorners};
 use lightcuts_kernel::texture::{REPEAT, STRAIGHT, STRETCH, Texture};
 use lightcuts_scene::{Issue, MaterialDesc, Projection, SceneDesc, TextureMode};
 
@@ -31,18 +32,8 @@ pub const MAX_PRIMITIVES: usize = 1 << 28;
 /// Everything that rendering reads, as flat slices. Immutable once made.
 #[derive(Debug, Clone)]
 pub struct World {
-    /// Nodes of the hierarchy; the first is the root.
-    pub nodes: Vec<BvhNode>,
-    /// Triangles for intersection, in blocks, in hierarchy order.
-    pub triangles: Vec<TriangleBlock>,
-    /// Spheres in file order.
-    pub spheres: Vec<Sphere>,
-    /// Squares in file order; a cube is six of them.
-    pub squares: Vec<Square>,
-    /// All primitives in file order.
-    pub primitives: Vec<Primitive>,
-    /// What triangles carry at their corners, in file order.
-    pub corners: Vec<TriangleCorners>,
+    /// What rays can hit.
+    pub shapes: Shapes,
     /// Materials.
     pub materials: Vec<Material>,
     /// Textures.
@@ -99,23 +90,15 @@ impl World {
             return Err(WorldError::Scene(issue));
         }
         let (textures, texels) = pack_textures(scene);
-        let mut builder = shapes::Builder::new(scene);
-        builder.add_objects();
-        builder.add_area_lights();
+        let (builder, materials) = thesis::build(scene);
         if builder.primitives.len() > MAX_PRIMITIVES {
             return Err(WorldError::TooLarge(builder.primitives.len()));
         }
-        let reach = scene.camera.center.abs().max_element();
-        let (nodes, triangles) = collapse::build(&builder, reach);
+        let object_bounds = thesis::object_bounds(&builder, &materials);
         let world = Self {
-            nodes,
-            triangles,
-            object_bounds: builder.object_bounds(),
-            spheres: builder.spheres,
-            squares: builder.squares,
-            primitives: builder.primitives,
-            corners: builder.corners,
-            materials: builder.materials,
+            shapes: builder.finish(scene.camera.center.abs().max_element()),
+            object_bounds,
+            materials,
             textures,
             texels,
             lights: lights::flatten(scene),
@@ -124,21 +107,6 @@ impl World {
         };
         debug_assert_eq!(world.validate(), Ok(()));
         Ok(world)
-    }
-
-    /// What rays can hit.
-    pub fn geometry(&self) -> Geometry<'_> {
-        Geometry { nodes: &self.nodes, triangles: &self.triangles, spheres: &self.spheres, squares: &self.squares }
-    }
-
-    /// What hits lie on.
-    pub fn surfaces(&self) -> Surfaces<'_> {
-        Surfaces {
-            primitives: &self.primitives,
-            corners: &self.corners,
-            spheres: &self.spheres,
-            squares: &self.squares,
-        }
     }
 
     /// The camera for a picture of `width` x `height` pixels. The height always spans the thesis' 5.12 units of the view

@@ -1,11 +1,21 @@
 //! Meshes placed in the scene.
 
-use glam::{Mat3, Quat, Vec3};
+use glam::{Affine3A, Mat3, Quat, Vec3};
 use lightcuts_kernel::ray::normalize_or_zero;
 use lightcuts_kernel::surface::TriangleCorners;
 use lightcuts_scene::{MeshDesc, MeshTriangle, Transform};
 
-/// A placement: rotate, scale, translate.
+/// From a mesh's space to the scene's.
+pub(crate) trait Place {
+    /// A position in the scene.
+    fn point(&self, p: Vec3) -> Vec3;
+    /// A unit normal in the scene, or zero.
+    fn normal(&self, n: Vec3) -> Vec3;
+    /// Whether the order of corners turns round.
+    fn is_mirrored(&self) -> bool;
+}
+
+/// The thesis' placement: rotate, scale, translate.
 pub(crate) struct Placement {
     rotation: Mat3,
     scale: Vec3,
@@ -22,8 +32,10 @@ impl Placement {
         };
         Self { rotation, scale: transform.scale, translation: transform.translation }
     }
+}
 
-    pub(crate) fn point(&self, p: Vec3) -> Vec3 {
+impl Place for Placement {
+    fn point(&self, p: Vec3) -> Vec3 {
         (self.rotation * p) * self.scale + self.translation
     }
 
@@ -31,20 +43,50 @@ impl Placement {
     fn normal(&self, n: Vec3) -> Vec3 {
         normalize_or_zero((self.rotation * n) / self.scale)
     }
+
+    fn is_mirrored(&self) -> bool {
+        self.scale.x * self.scale.y * self.scale.z < 0.0
+    }
+}
+
+/// Any affine map that keeps volumes.
+pub(crate) struct AffinePlacement {
+    to_scene: Affine3A,
+    /// Normals go with the transposed inverse.
+    of_normals: Mat3,
+}
+
+impl AffinePlacement {
+    pub(crate) fn new(to_scene: Affine3A) -> Self {
+        Self { to_scene, of_normals: Mat3::from(to_scene.matrix3).inverse().transpose() }
+    }
+}
+
+impl Place for AffinePlacement {
+    fn point(&self, p: Vec3) -> Vec3 {
+        self.to_scene.transform_point3(p)
+    }
+
+    fn normal(&self, n: Vec3) -> Vec3 {
+        normalize_or_zero(self.of_normals * n)
+    }
+
+    fn is_mirrored(&self) -> bool {
+        self.to_scene.matrix3.determinant() < 0.0
+    }
 }
 
 /// A placed triangle: its corners and what they carry.
 pub(crate) fn place_triangle(
     mesh: &MeshDesc,
     triangle: &MeshTriangle,
-    placement: &Placement,
+    placement: &impl Place,
     smooth: bool,
 ) -> ([Vec3; 3], TriangleCorners) {
     let points = triangle.positions.map(|i| placement.point(mesh.positions[i as usize]));
     let face = normalize_or_zero((points[1] - points[0]).cross(points[2] - points[0]));
     // A mirroring scale turns the corners' order round; the normal must stay on its side.
-    let mirrored = placement.scale.x * placement.scale.y * placement.scale.z < 0.0;
-    let face = if mirrored { -face } else { face };
+    let face = if placement.is_mirrored() { -face } else { face };
     let normals = match triangle.normals.filter(|_| smooth) {
         Some(indices) => indices.map(|i| {
             let normal = placement.normal(mesh.normals[i as usize]);
@@ -88,6 +130,9 @@ mod tests {
         let placement = Placement::new(&Transform::default());
         let (_, smooth) = place_triangle(&mesh, &triangle, &placement, true);
         assert_eq!(smooth.normals, [Vec3::Z, Vec3::X, Vec3::Z]);
+        let turned = AffinePlacement::new(Affine3A::from_rotation_z(std::f32::consts::FRAC_PI_2));
+        let (points, corners) = place_triangle(&mesh, &triangle, &turned, true);
+        assert!((points[1] - Vec3::Y).length() < 1e-6 && (corners.normals[1] - Vec3::Y).length() < 1e-6);
         let (_, flat) = place_triangle(&mesh, &triangle, &placement, false);
         assert_eq!(flat.normals, [Vec3::Z; 3]);
     }

@@ -1,7 +1,7 @@
 //! What must hold of a world: every reference points at something and every box holds what is under it.
 
-use crate::World;
 use crate::bvh::{BvhNode, ChildRef, LANES, STACK_SIZE};
+use crate::{Shapes, World};
 use glam::Vec3;
 use lightcuts_kernel::ray::NONE;
 
@@ -28,9 +28,17 @@ pub enum Defect {
 impl World {
     /// Checks the structure of the whole world.
     pub fn validate(&self) -> Result<(), Defect> {
-        let numbers_hold = self.primitives.iter().all(|p| (p.material as usize) < self.materials.len())
-            && self.materials.iter().all(|m| m.texture == NONE || (m.texture as usize) < self.textures.len());
-        if !numbers_hold {
+        if !self.materials.iter().all(|m| m.texture == NONE || (m.texture as usize) < self.textures.len()) {
+            return Err(Defect::DanglingNumber);
+        }
+        self.shapes.validate(self.materials.len())
+    }
+}
+
+impl Shapes {
+    /// Checks the structure of the hierarchy and the numbers of materials, of which there are so many.
+    pub fn validate(&self, materials: usize) -> Result<(), Defect> {
+        if !self.primitives.iter().all(|p| (p.material as usize) < materials) {
             return Err(Defect::DanglingNumber);
         }
         let mut seen = vec![0_u32; self.primitives.len()];

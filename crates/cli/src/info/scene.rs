@@ -92,9 +92,9 @@ impl SceneInfo {
             emitters: world.lights.len(),
             objects: objects(scene),
             totals: Totals {
-                triangles: world.corners.len(),
-                spheres: world.spheres.len(),
-                squares: world.squares.len(),
+                triangles: world.shapes.corners.len(),
+                spheres: world.shapes.spheres.len(),
+                squares: world.shapes.squares.len(),
             },
             bounds: bounds(world),
             recommended: recommended(scene),
@@ -168,7 +168,7 @@ fn texture(scene: &SceneDesc, material: &MaterialDesc) -> Option<Texture> {
 
 /// The union of the root's boxes; empty ones are inverted.
 fn bounds(world: &World) -> Option<[[f32; 3]; 2]> {
-    let root = world.nodes.first()?;
+    let root = world.shapes.nodes.first()?;
     let taken = |lane: &usize| root.lower[0][*lane] <= root.upper[0][*lane];
     let lanes: Vec<usize> = (0..root.child.len()).filter(taken).collect();
     let lower = root.lower.map(|of_axis| lanes.iter().map(|&lane| of_axis[lane]).fold(f32::INFINITY, f32::min));

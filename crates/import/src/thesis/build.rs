@@ -266,7 +266,7 @@ impl<'t> Builder<'t> {
             Subject::Light(i) => self.draft.lights.get(i).copied(),
             Subject::Object(i) => self.draft.objects.get(i).copied(),
             Subject::Mesh(i) => self.draft.meshes.get(i).copied(),
-            Subject::Image(_) => None,
+            Subject::Image(_) | Subject::Environment => None,
             Subject::Material(i) => match self.draft.materials.get(i) {
                 Some(MaterialOrigin::Directive(start)) => Some(*start),
                 Some(MaterialOrigin::Library(library, name, start)) => {

@@ -30,7 +30,7 @@ impl<'a> CpuDevice<'a> {
     }
 
     fn tracer(&self, view: &View<'_>) -> Tracer<'a> {
-        Tracer::new(self.world.geometry(), view.rules, self.simd)
+        Tracer::new(self.world.shapes.geometry(), view.rules, self.simd)
     }
 }
 

@@ -95,7 +95,7 @@ mod tests {
     fn hierarchy_and_simd_find_what_brute_force_finds() {
         for scene in ["thesis/simple.txt", "thesis/statue.txt", "thesis/ship.txt", "gallery/cubes.txt"] {
             let world = world(scene);
-            let geometry = world.geometry();
+            let geometry = world.shapes.geometry();
             let mut hits = 0;
             for k in 0..20_000 {
                 let ray = ray(k);
@@ -132,7 +132,7 @@ mod tests {
                 let mut stack = PacketStack::new();
                 let mut gather = |simd| {
                     evaluate(
-                        &Tracer::new(world.geometry(), rules, simd),
+                        &Tracer::new(world.shapes.geometry(), rules, simd),
                         &tree.blocks,
                         &all,
                         Some(1e-5),

@@ -144,7 +144,7 @@ mod tests {
             let [a, b, c, _] = random4(k, 0, 0, 1);
             let direction = Vec3::new(a, b, c) - 0.5;
             let ray = Ray { origin: Vec3::splat(90.0), direction, t_min: 0.0, t_max: f32::INFINITY, inside: false };
-            assert!(closest_hit(&room.world.geometry(), &ray, Rules::Repaired).is_some());
+            assert!(closest_hit(&room.world.shapes.geometry(), &ray, Rules::Repaired).is_some());
         }
     }
 }

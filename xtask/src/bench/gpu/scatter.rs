@@ -62,7 +62,7 @@ impl Room {
 
     /// Where those rays arrive.
     pub(super) fn seen(&self, rays: &[Ray]) -> Vec<Point> {
-        let (geometry, surfaces) = (self.world.geometry(), self.world.surfaces());
+        let (geometry, surfaces) = (self.world.shapes.geometry(), self.world.shapes.surfaces());
         let arrive = |ray: &Ray| {
             let hit = closest_hit(&geometry, ray, Rules::Repaired);
             let surface = hit.is_some().then(|| surface_at(&surfaces, ray, &hit))?;

@@ -47,7 +47,7 @@ pub(crate) const ROWS: [Row; 15] = [
     twin("intersect_item", |c| {
         let item = item(c);
         let ray = c.ray_to(item.a + (item.b + item.c) * c.raw_fraction());
-        c.put(intersect_item(&item, &c.tables.world.squares, &ray, c.rules()));
+        c.put(intersect_item(&item, &c.tables.world.shapes.squares, &ray, c.rules()));
     }),
     twin("octant_order", |c| c.put(octant_order(c.point()))),
     twin("enter_children", |c| {
@@ -67,7 +67,7 @@ pub(crate) const ROWS: [Row; 15] = [
 /// A primitive under a leaf.
 fn item(c: &Case<'_>) -> LeafItem {
     c.take(|| {
-        let squares = c.tables.world.squares.len();
+        let squares = c.tables.world.shapes.squares.len();
         let (a, c1, c2) = (c.raw_point(), c.raw_point(), c.raw_point());
         let kind = c.choice(if squares == 0 { 2 } else { 3 }) as u32;
         LeafItem { a, primitive: 9, b: c1, kind, c: c2, index: c.choice(squares.max(1)) as u32 }

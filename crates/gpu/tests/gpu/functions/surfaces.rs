@@ -29,11 +29,11 @@ pub(crate) const ROWS: [Row; 12] = [
     twin("surface_point", |c| {
         let hit = hit(c);
         let surface = Surface { point: c.point(), normal: c.direction(), material: c.word(), object: c.word() };
-        c.put(surface_point(&c.tables.world.surfaces(), &hit, &surface));
+        c.put(surface_point(&c.tables.world.shapes.surfaces(), &hit, &surface));
     }),
     twin("surface_at", |c| {
         let ray = c.ray_to(c.raw_point());
-        c.put(surface_at(&c.tables.world.surfaces(), &ray, &hit(c)));
+        c.put(surface_at(&c.tables.world.shapes.surfaces(), &ray, &hit(c)));
     }),
     twin("photon_cell", |c| {
         c.put(photon_cell(c.point(), c.take(|| [1.0, 0.1, 1e-6, 5.0 * c.random() + 1e-3][c.choice(4)])));
@@ -64,7 +64,7 @@ pub(crate) const TRAVERSALS: [Row; 3] = [
 ];
 
 fn geometry<'t>(c: &Case<'t>) -> CompressedGeometry<'t> {
-    c.tables.hierarchy.geometry(&c.tables.world.squares)
+    c.tables.hierarchy.geometry(&c.tables.world.shapes.squares)
 }
 
 /// A ray between the corners of a thesis scene or out of it, some along axes.
@@ -86,7 +86,7 @@ fn far_ray(c: &Case<'_>) -> Ray {
 fn hit(c: &Case<'_>) -> Hit {
     c.take(|| {
         let u = c.raw_fraction();
-        let primitive = c.choice(c.tables.world.primitives.len()) as u32;
+        let primitive = c.choice(c.tables.world.shapes.primitives.len()) as u32;
         Hit { t: 10.0 * c.random(), primitive, u, v: (1.0 - u) * c.raw_fraction() }
     })
 }

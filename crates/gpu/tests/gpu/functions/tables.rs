@@ -40,9 +40,9 @@ impl Tables {
     /// Their contents in the order of [`BUFFERS`].
     pub(crate) fn contents(&self) -> [&[u8]; BUFFERS.len()] {
         let world = &self.world;
-        let spheres: &[u8] = cast_slice(&world.spheres);
-        let squares: &[u8] = cast_slice(&world.squares);
-        let corners: &[u8] = cast_slice(&world.corners);
+        let spheres: &[u8] = cast_slice(&world.shapes.spheres);
+        let squares: &[u8] = cast_slice(&world.shapes.squares);
+        let corners: &[u8] = cast_slice(&world.shapes.corners);
         // A scene without spheres, say, still binds a buffer.
         let bound = |content, size| if <[u8]>::is_empty(content) { &[0; 64][..size] } else { content };
         [
@@ -50,7 +50,7 @@ impl Tables {
             cast_slice(&self.hierarchy.items),
             bound(squares, 64),
             bound(spheres, 32),
-            cast_slice(&world.primitives),
+            cast_slice(&world.shapes.primitives),
             bound(corners, 64),
             cast_slice(&self.texels),
             cast_slice(&self.photons),
