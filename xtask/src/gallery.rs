@@ -12,7 +12,7 @@ pub(crate) struct Args {
     /// Width and height of the pictures in pixels.
     #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=8192))]
     size: u32,
-    /// Samples of every pixel.
+    /// Samples of every pixel of the thesis' model.
     #[arg(long, default_value_t = 4)]
     samples: u32,
     /// Folder with the meshes that are not part of the project [default: ../shared/models].
@@ -65,7 +65,9 @@ fn scenes() -> Result<Vec<PathBuf>> {
     };
     let mut scenes = Vec::new();
     for folder in list(&project::root().join("scenes"))?.iter().filter(|path| path.is_dir()) {
-        scenes.extend(list(folder)?.into_iter().filter(|path| path.extension().is_some_and(|e| e == "txt")));
+        scenes.extend(
+            list(folder)?.into_iter().filter(|path| path.extension().is_some_and(|e| e == "txt" || e == "toml")),
+        );
     }
     Ok(scenes)
 }
@@ -75,7 +77,11 @@ fn render(cli: &Path, scene: &Path, picture: &Path, models: &Path, args: &Args) 
     let extra = OPTIONS.iter().find(|(scene, _)| *scene == name).map_or(&[][..], |(_, options)| options);
     let mut command = Command::new(cli);
     command.arg("render").arg(scene).arg("-o").arg(picture).arg("--search-path").arg(models);
-    command.arg("--quiet").arg(format!("--size={0}x{0}", args.size)).arg(format!("--samples={}", args.samples));
+    command.arg("--quiet").arg(format!("--size={0}x{0}", args.size));
+    // Scenes of the physical model take the samples that they need.
+    if scene.extension().is_some_and(|extension| extension == "txt") {
+        command.arg(format!("--samples={}", args.samples));
+    }
     command.args(extra);
     let output = command.output().context("cannot run lightcuts")?;
     if !output.status.success() {

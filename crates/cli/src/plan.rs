@@ -5,8 +5,9 @@ use crate::console;
 use crate::exit::{Exit, Failure};
 use crate::job::{self, Job, JobFile};
 use crate::outputs::Outputs;
-use lightcuts::scene::SceneDesc;
-use lightcuts::{ImportOptions, Imported, Settings};
+use lightcuts::rendering::Model;
+use lightcuts::scene::physical::from_thesis;
+use lightcuts::{AnyScene, ImportOptions, Imported, Settings};
 use miette::Report;
 use std::path::{Path, PathBuf};
 
@@ -16,7 +17,8 @@ const SEARCH_VARIABLE: &str = "LIGHTCUTS_PATH";
 /// All that a render needs to know.
 #[derive(Debug)]
 pub(crate) struct Plan {
-    pub(crate) scene: SceneDesc,
+    /// Of the job's model of light.
+    pub(crate) scene: AnyScene,
     pub(crate) job: Job,
     pub(crate) outputs: Outputs,
 }
@@ -38,12 +40,28 @@ impl Plan {
         let outputs = Outputs::new(&args.output, &sources.scene)?;
         outputs.check(&sources.inputs)?;
         let imported = load(&sources.scene, &sources.search_path)?;
-        let recommended = Settings::for_scene(&imported.scene);
-        let settings = job::resolve(&recommended, &sources.files, &args.settings)?;
+        let settings = resolved(&imported.scene, &sources.files, args)?;
+        let scene = in_model(imported.scene, &settings)?;
         sources.inputs.extend(imported.files);
         outputs.check(&sources.inputs)?;
-        let Sources { scene, search_path, read_vpls, .. } = sources;
-        Ok(Self { scene: imported.scene, job: Job { scene, search_path, read_vpls, settings }, outputs })
+        let Sources { scene: file, search_path, read_vpls, .. } = sources;
+        if settings.run.model == Model::Physical && (read_vpls.is_some() || args.output.write_vpls.is_some()) {
+            return Err(Failure::usage(
+                "the physical model has no VPLs to read or write: each pass makes its own".to_owned(),
+                "leave out --read-vpls and --write-vpls",
+            ));
+        }
+        Ok(Self { scene, job: Job { scene: file, search_path, read_vpls, settings }, outputs })
+    }
+}
+
+impl Plan {
+    /// The scene's name.
+    pub(crate) fn scene_name(&self) -> &str {
+        match &self.scene {
+            AnyScene::Thesis(scene) => &scene.name,
+            AnyScene::Physical(scene) => &scene.name,
+        }
     }
 }
 
@@ -71,6 +89,33 @@ impl Sources {
     }
 }
 
+/// The settings, over what the scene recommends for the model that they name.
+fn resolved(scene: &AnyScene, files: &[JobFile], args: &RenderArgs) -> Result<Settings, Failure> {
+    let recommended = match scene {
+        AnyScene::Thesis(scene) => Settings::for_scene(scene),
+        AnyScene::Physical(_) => Settings::for_physical(),
+    };
+    let settings = job::resolve(&recommended, files, &args.settings)?;
+    if matches!(scene, AnyScene::Thesis(_)) && settings.run.model == Model::Physical {
+        return job::resolve(&Settings::for_physical(), files, &args.settings);
+    }
+    Ok(settings)
+}
+
+/// The scene in the model of light that the settings name.
+fn in_model(scene: AnyScene, settings: &Settings) -> Result<AnyScene, Failure> {
+    match (scene, settings.run.model) {
+        (AnyScene::Thesis(scene), Model::Physical) => {
+            Ok(AnyScene::Physical(from_thesis(&scene, settings.physical.light_scale)))
+        }
+        (AnyScene::Physical(_), Model::Thesis) => Err(Failure::usage(
+            "the scene is of the physical model and cannot be rendered with the thesis' one".to_owned(),
+            "leave out --model",
+        )),
+        (scene, _) => Ok(scene),
+    }
+}
+
 /// Folders to search, without repetitions: flags, job, environment.
 pub(crate) fn search_path<'a>(args: &'a SearchArgs, of_job: impl Iterator<Item = &'a PathBuf>) -> Vec<PathBuf> {
     let variable = std::env::var_os(SEARCH_VARIABLE).unwrap_or_default();
@@ -85,9 +130,9 @@ pub(crate) fn search_path<'a>(args: &'a SearchArgs, of_job: impl Iterator<Item =
 }
 
 /// Reads a scene; its warnings go to standard error.
-pub(crate) fn load(path: &Path, search_paths: &[PathBuf]) -> Result<Imported, Failure> {
+pub(crate) fn load(path: &Path, search_paths: &[PathBuf]) -> Result<Imported<AnyScene>, Failure> {
     let options = ImportOptions { search_paths: search_paths.to_vec(), ..ImportOptions::default() };
-    let imported = lightcuts::load(path, &options).map_err(|error| Failure::new(Exit::Input, error))?;
+    let imported = lightcuts::load_any(path, &options).map_err(|error| Failure::new(Exit::Input, error))?;
     tracing::info!(files = imported.files.len(), "read {}", path.display());
     for warning in &imported.warnings {
         console::show(&Report::new(warning.clone()));

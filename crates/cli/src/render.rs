@@ -1,17 +1,20 @@
 //! The command `render`: plan, render, write.
 
 use crate::args::{PerformanceArgs, RenderArgs, SimdChoice, ThreadArgs};
+use crate::devices::GpuWork;
 use crate::exit::{Exit, Failure};
 use crate::fault::{fault, span_at};
 use crate::job::{JOB_ATTRIBUTE, Job, VERSION_ATTRIBUTE, require_regular};
 use crate::outputs::{Kind, job_text};
+use crate::picture::Picture;
 use crate::plan::Plan;
 use crate::progress::Progress;
 use crate::summary::{Statistics, summary};
 use crate::{console, devices, interrupt, memory};
 use lightcuts::device::Device;
-use lightcuts::gpu::Fleet;
-use lightcuts::{Options, Rendering, Simd, Station, VplCsvError, World, image, vpls_from_csv, vpls_to_csv};
+use lightcuts::{
+    AnyScene, Options, PhysicalWorld, SettingsError, Simd, Station, VplCsvError, World, image, vpls_from_csv,
+};
 use std::path::Path;
 
 /// Text in a picture that was not finished.
@@ -27,35 +30,66 @@ pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
         return dry_run(plan, args.output.talk.quiet);
     }
     memory::require_for(plan.job.settings.image)?;
-    let options = options(&plan, &args.performance)?;
-    let world = World::new(&plan.scene).map_err(Failure::input)?;
-    if interrupt::came() {
-        console::note("lightcuts: nothing was rendered; nothing is written");
-        return Ok(Exit::Interrupted);
-    }
     let progress = Progress::new(args.output.talk.progress, args.output.talk.quiet, logs);
-    let fleet = devices::open(&assignment, &world, options.simd, &args.performance.devices, &progress)?;
-    let rendering = lightcuts::render_on(&world, &plan.job.settings, &options, &fleet.stations(), &progress)
-        .map_err(|error| Failure::usage(error.to_string(), "see `lightcuts render --help`"))?;
-    progress.finish();
-    devices::log(&fleet);
-    finish(&plan, &rendering, &fleet, args.output.talk.quiet)
+    match &plan.scene {
+        AnyScene::Thesis(scene) => {
+            let options = options(&plan, &args.performance)?;
+            let world = World::new(scene).map_err(Failure::input)?;
+            if interrupt::came() {
+                return Ok(nothing_rendered());
+            }
+            let fleet = devices::open(&assignment, &world, options.simd, &args.performance.devices, &progress)?;
+            let rendering = lightcuts::render_on(&world, &plan.job.settings, &options, &fleet.stations(), &progress);
+            progress.finish();
+            devices::log(&fleet);
+            let picture = Picture::Thesis(Box::new(rendering.map_err(|error| out_of_range(&error))?));
+            let device = *fleet.stations().at(Station::Develop);
+            finish(&plan, &picture, Some(device), GpuWork::of(&fleet), args.output.talk.quiet)
+        }
+        AnyScene::Physical(scene) => {
+            devices::require_cpu(&args.performance.devices)?;
+            let world = PhysicalWorld::new(scene).map_err(Failure::input)?;
+            if interrupt::came() {
+                return Ok(nothing_rendered());
+            }
+            let simd = simd(&args.performance);
+            let rendering = lightcuts::render_physical(&world, &plan.job.settings, simd, &progress);
+            progress.finish();
+            let picture = Picture::Physical(Box::new(rendering.map_err(|error| out_of_range(&error))?));
+            finish(&plan, &picture, None, Vec::new(), args.output.talk.quiet)
+        }
+    }
+}
+
+fn out_of_range(error: &SettingsError) -> Failure {
+    Failure::usage(error.to_string(), "see `lightcuts render --help`")
+}
+
+fn nothing_rendered() -> Exit {
+    console::note("lightcuts: nothing was rendered; nothing is written");
+    Exit::Interrupted
 }
 
 /// Writes the outputs and sums up.
-fn finish(plan: &Plan, rendering: &Rendering, fleet: &Fleet<'_>, quiet: bool) -> Result<Exit, Failure> {
-    let statistics = Statistics::new(plan, rendering, fleet);
+fn finish(
+    plan: &Plan,
+    picture: &Picture,
+    device: Option<&dyn Device>,
+    gpu: Vec<GpuWork>,
+    quiet: bool,
+) -> Result<Exit, Failure> {
+    let statistics = Statistics::new(plan, picture.stats(), gpu);
     let (written, exit) = plan.outputs.write(|kind, path| match kind {
-        Kind::Exr => write_exr(path, rendering, &plan.job),
-        Kind::Png => write_png(path, rendering, &plan.job, *fleet.stations().at(Station::Develop)),
+        Kind::Exr => write_exr(path, picture, &plan.job),
+        Kind::Png => write_png(path, picture, &plan.job, device),
         Kind::Stats => write(path, &statistics.to_json()?),
-        Kind::Vpls => write(path, &vpls_to_csv(&rendering.vpls)),
+        Kind::Vpls => write(path, &picture.vpls_csv()),
         Kind::Job => write(path, &job_text(&plan.job, path)?),
     });
     if !quiet {
         console::print(summary(&statistics, &written).as_bytes())?;
     }
-    if rendering.stats.complete {
+    if picture.stats().complete {
         return Ok(exit);
     }
     let names: Vec<_> = written.iter().map(|path| path.display().to_string()).collect();
@@ -80,12 +114,15 @@ pub(crate) fn start_threads(args: &ThreadArgs) -> Result<(), Failure> {
     pool.map_err(|error| Failure::usage(format!("cannot start threads: {error}"), "ask for fewer with --threads"))
 }
 
-fn options(plan: &Plan, args: &PerformanceArgs) -> Result<Options, Failure> {
-    let simd = match args.simd {
+fn simd(args: &PerformanceArgs) -> Simd {
+    match args.simd {
         SimdChoice::Auto => Simd::Auto,
         SimdChoice::Off => Simd::Off,
-    };
-    let mut options = Options { simd, ..Options::default() };
+    }
+}
+
+fn options(plan: &Plan, args: &PerformanceArgs) -> Result<Options, Failure> {
+    let mut options = Options { simd: simd(args), ..Options::default() };
     if let Some(path) = &plan.job.read_vpls {
         let refuse = |why: String| Failure::input(format!("cannot read the VPLs {}: {why}", path.display()));
         require_regular(path).map_err(refuse)?;
@@ -100,25 +137,25 @@ fn options(plan: &Plan, args: &PerformanceArgs) -> Result<Options, Failure> {
 }
 
 /// Texts that go into a picture, apart from the job.
-fn remarks(rendering: &Rendering) -> Vec<(&'static str, &'static str)> {
-    let complete = (!rendering.stats.complete).then_some((COMPLETE_ATTRIBUTE, "false"));
+fn remarks(picture: &Picture) -> Vec<(&'static str, &'static str)> {
+    let complete = (!picture.stats().complete).then_some((COMPLETE_ATTRIBUTE, "false"));
     [(VERSION_ATTRIBUTE, env!("CARGO_PKG_VERSION"))].into_iter().chain(complete).collect()
 }
 
-fn write_exr(path: &Path, rendering: &Rendering, job: &Job) -> Result<(), Failure> {
+fn write_exr(path: &Path, picture: &Picture, job: &Job) -> Result<(), Failure> {
     let text = job_text(job, path)?;
-    let mut layers = rendering.layers();
-    for (name, value) in remarks(rendering).into_iter().chain([(JOB_ATTRIBUTE, text.as_str())]) {
+    let mut layers = picture.layers();
+    for (name, value) in remarks(picture).into_iter().chain([(JOB_ATTRIBUTE, text.as_str())]) {
         layers.set_attribute(name, value).map_err(Failure::output)?;
     }
     image::write_exr(path, &layers).map_err(Failure::output)
 }
 
-fn write_png(path: &Path, rendering: &Rendering, job: &Job, device: &dyn Device) -> Result<(), Failure> {
+fn write_png(path: &Path, picture: &Picture, job: &Job, device: Option<&dyn Device>) -> Result<(), Failure> {
     let text = job_text(job, path)?;
-    let texts: Vec<_> = [(JOB_ATTRIBUTE, text.as_str())].into_iter().chain(remarks(rendering)).collect();
+    let texts: Vec<_> = [(JOB_ATTRIBUTE, text.as_str())].into_iter().chain(remarks(picture)).collect();
     let display = &job.settings.display;
-    let shown = rendering.displayed_on(display, device);
+    let shown = picture.displayed(display, device);
     image::write_png_with_text(path, &shown, display.transfer, &texts).map_err(Failure::output)
 }
 

@@ -5,9 +5,8 @@ use crate::exit::Failure;
 use crate::memory;
 use crate::plan::Plan;
 use lightcuts::device::DeviceKind;
-use lightcuts::gpu::Fleet;
-use lightcuts::rendering::StationDevice;
-use lightcuts::{Rendering, Settings, Stats};
+use lightcuts::rendering::{Model, StationDevice};
+use lightcuts::{Settings, Stats};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
@@ -31,15 +30,15 @@ pub(crate) struct Statistics<'a> {
 
 impl<'a> Statistics<'a> {
     /// Of a render that just ended: the memory is that of the process so far.
-    pub(crate) fn new(plan: &'a Plan, rendering: &'a Rendering, fleet: &Fleet<'_>) -> Self {
+    pub(crate) fn new(plan: &'a Plan, stats: &'a Stats, gpu: Vec<GpuWork>) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            scene: &plan.scene.name,
+            scene: plan.scene_name(),
             scene_file: plan.job.scene.display().to_string(),
             threads: rayon::current_num_threads(),
             peak_memory_bytes: memory::peak_bytes(),
-            stats: &rendering.stats,
-            gpu: GpuWork::of(fleet),
+            stats,
+            gpu,
             settings: &plan.job.settings,
         }
     }
@@ -62,8 +61,13 @@ pub(crate) fn summary(statistics: &Statistics<'_>, written: &[&Path]) -> String 
     };
     line("scene", &format!("{} ({})", statistics.scene, statistics.scene_file));
     line("picture", &format!("{} x {}, samples {}", size.width, size.height, settings.sampling.samples));
-    line("VPLs", &stats.vpl_count.to_string());
-    line("light ratio", &format!("{:.4} %", stats.light_ratio_percent));
+    if settings.run.model == Model::Thesis {
+        line("VPLs", &stats.vpl_count.to_string());
+        line("light ratio", &format!("{:.4} %", stats.light_ratio_percent));
+    } else if stats.tree.shaded_hits > 0 {
+        let cut = stats.tree.selected as f64 / stats.tree.shaded_hits as f64;
+        line("VPLs", &format!("{} in the last pass, {cut:.0} in a cut", stats.vpl_count));
+    }
     if let Some(devices) = devices(&stats.devices) {
         line("device", &devices);
     }

@@ -104,7 +104,8 @@ impl Engine {
             ..GatherParams::zeroed()
         };
         match vpls.strategy {
-            Strategy::Lightcuts => self.gather_cut(&params, layer, monitor)?,
+            // `stochastic` is of the physical model; settings with it are not rendered here.
+            Strategy::Lightcuts | Strategy::Stochastic => self.gather_cut(&params, layer, monitor)?,
             Strategy::All | Strategy::LightcutsExhaustive => self.gather_all(&params, layer, monitor)?,
         }
         self.scale(layer, vpls.photons)

@@ -12,7 +12,7 @@ pub enum ImportError {
     Unreadable(#[from] FileError),
 
     /// The file is no scene in a known format.
-    #[error("{}: this is {found}; expected a scene in the thesis' text format (.txt), the only known format", path.display())]
+    #[error("{}: this is {found}; expected a scene in the thesis' text format (.txt) or in the project's own (.toml)", path.display())]
     #[diagnostic(code(lightcuts::import::unknown_format))]
     UnknownFormat {
         /// The file.

@@ -6,6 +6,8 @@ use std::path::Path;
 const OBJ_HELP: &str = "write a scene with a camera, a light and a line such as `O | FRKE{0, 0, 1, 1} | PATH:model.obj | SMTH(1) | \
                         S{0, 0, 0} | D{0.5, 0.5, 0.5} | A{0, 0, 0} | SH(20)`";
 
+const TOML_HELP: &str = "render a scene of the physical model as one, or write a scene in the thesis' text format";
+
 /// Extensions that scenes have elsewhere, and what they mean.
 const KNOWN_EXTENSIONS: [(&str, &str); 14] = [
     ("obj", "an OBJ model without camera and lights"),
@@ -51,6 +53,20 @@ pub(crate) fn refuse_other_content(path: &Path, bytes: &[u8]) -> Result<(), Impo
     let content = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let known = KNOWN_STARTS.iter().find(|(start, _)| content.starts_with(start));
     known.map_or(Ok(()), |(_, found)| Err(unknown(path, found)))
+}
+
+/// Whether a file should hold a scene in TOML.
+pub(crate) fn is_toml(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+}
+
+/// The refusal of a TOML file where a scene of the thesis' model is wanted.
+pub(crate) fn toml(path: &Path) -> ImportError {
+    ImportError::UnknownFormat {
+        path: path.to_path_buf(),
+        found: "a TOML file, which holds a job or a scene of the physical model",
+        help: Some(TOML_HELP),
+    }
 }
 
 fn unknown(path: &Path, found: &'static str) -> ImportError {

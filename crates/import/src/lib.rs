@@ -1,19 +1,23 @@
 //! Importers: scene and model files to scene descriptions, with errors that name file, line and column.
 //!
-//! The one scene format so far is the thesis' text ([`parse_thesis`]), with meshes in OBJ files, their materials in MTL
-//! files and textures in PNG or JPEG files. Nothing in a file can make an importer panic, hang or use memory without
-//! bound: sizes are checked against [`Limits`] before anything is read, only regular files are opened, and the number
-//! and length of messages is limited. What holds of every scene, whatever its format, is checked by
-//! [`lightcuts_scene::SceneDesc::validate`]; the importers only turn its issues into messages that point at the field.
+//! Scenes of the thesis' model come in the thesis' text ([`parse_thesis`]), those of the physical model in TOML
+//! ([`parse_physical`]); with meshes in OBJ or PLY files, their materials in MTL files and images in PNG, JPEG, EXR, HDR or PFM
+//! files. Nothing in a file can make an importer panic, hang or use memory without bound: sizes are checked against [`Limits`]
+//! before anything is read, only regular files are opened, and the number and length of messages is limited. What holds of
+//! every scene, whatever its format, is checked by its `validate` in `lightcuts-scene`; the importers only turn its issues into
+//! messages that point at the field.
 
-mod assets;
-mod draft;
 mod error;
 mod fault;
+mod files;
 mod format;
 mod limits;
+mod lines;
+mod model;
 mod number;
 mod obj;
+mod physical;
+mod ply;
 mod report;
 mod resolver;
 mod source;
@@ -23,10 +27,12 @@ mod thesis;
 pub use error::{Faults, ImportError, Warning};
 pub use fault::Fault;
 pub use limits::Limits;
+pub use physical::parse_physical;
 pub use resolver::{FileError, FileResolver, MemoryResolver, Resolver};
 pub use thesis::parse_thesis;
 
 use lightcuts_scene::SceneDesc;
+use lightcuts_scene::physical::PhysicalScene;
 use std::path::{Path, PathBuf};
 
 /// How to import.
@@ -40,26 +46,64 @@ pub struct ImportOptions {
 
 /// A scene that was read.
 #[derive(Debug)]
-pub struct Imported {
-    /// The scene; [`SceneDesc::validate`] finds no issue in it.
-    pub scene: SceneDesc,
+pub struct Imported<S = SceneDesc> {
+    /// The scene; its `validate` finds no issue in it.
+    pub scene: S,
     /// What was ignored or looks like a mistake, in the order it was met.
     pub warnings: Vec<Warning>,
     /// Every file that was read, the scene first.
     pub files: Vec<PathBuf>,
 }
 
-/// Reads the scene file at `path` and every model and texture that it names.
+/// A scene of either model.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AnyScene {
+    /// Of the thesis' model.
+    Thesis(SceneDesc),
+    /// Of the physical model.
+    Physical(PhysicalScene),
+}
+
+impl<S> Imported<S> {
+    /// The same import of a scene made of this one.
+    pub fn map<T>(self, change: impl FnOnce(S) -> T) -> Imported<T> {
+        Imported { scene: change(self.scene), warnings: self.warnings, files: self.files }
+    }
+}
+
+/// Reads the scene file at `path`, of the thesis' model, and every model and texture that it names.
 ///
-/// Fails if the file cannot be read, is in no known format, or holds an error; see [`ImportError`].
+/// Fails if the file cannot be read, is in no known format or one of the physical model, or holds an error; see
+/// [`ImportError`].
 pub fn load(path: &Path, options: &ImportOptions) -> Result<Imported, ImportError> {
-    let resolver = FileResolver::new(path, &options.search_paths);
     format::refuse_known_extensions(path)?;
-    let bytes = resolver::read(&resolver, path, options.limits.scene_bytes)?;
+    if format::is_toml(path) {
+        return Err(format::toml(path));
+    }
+    read(path, options, options.limits.scene_bytes, parse_thesis)
+}
+
+/// Reads the scene file at `path`, of either model, and every model and image that it names. What ends in `.toml` is read as
+/// [`parse_physical`] does, all else as [`load`] does.
+pub fn load_any(path: &Path, options: &ImportOptions) -> Result<Imported<AnyScene>, ImportError> {
+    if format::is_toml(path) {
+        let physical = read(path, options, options.limits.document_bytes, parse_physical)?;
+        return Ok(physical.map(AnyScene::Physical));
+    }
+    Ok(load(path, options)?.map(AnyScene::Thesis))
+}
+
+/// What reads a scene from a text.
+type Parse<S> = fn(&str, &str, &dyn Resolver, &Limits) -> Result<Imported<S>, ImportError>;
+
+/// Reads a file of at most `limit` bytes.
+fn read<S>(path: &Path, options: &ImportOptions, limit: u64, parse: Parse<S>) -> Result<Imported<S>, ImportError> {
+    let resolver = FileResolver::new(path, &options.search_paths);
+    let bytes = resolver::read(&resolver, path, limit)?;
     let name = path.display().to_string();
     format::refuse_other_content(path, &bytes)?;
     let text = source::decode(&name, &bytes)?;
-    let mut imported = parse_thesis(&text, &name, &resolver, &options.limits)?;
+    let mut imported = parse(&text, &name, &resolver, &options.limits)?;
     imported.files.insert(0, path.to_path_buf());
     Ok(imported)
 }

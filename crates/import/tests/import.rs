@@ -1,6 +1,7 @@
 //! Scene files from end to end: equal scenes in every spelling, and a message for everything that can be wrong.
 
 mod malformed;
+mod physical;
 
 use lightcuts_import::{
     FileResolver, ImportError, ImportOptions, Imported, Limits, MemoryResolver, load, parse_thesis,

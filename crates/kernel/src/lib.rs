@@ -5,6 +5,7 @@
 
 pub mod bsdf;
 pub mod camera;
+pub mod cluster;
 pub mod cwbvh;
 pub mod dielectric;
 pub mod emitter;
@@ -34,13 +35,15 @@ pub mod scatter;
 pub mod surface;
 pub mod texture;
 pub mod vector;
+pub mod virtual_light;
 pub mod wgsl;
 
 pub use rules::Rules;
 
 /// The modules whose WGSL twins are still to be written, by file stem.
-pub const TWINS_TO_COME: [&str; 11] = [
+pub const TWINS_TO_COME: [&str; 13] = [
     "bsdf",
+    "cluster",
     "dielectric",
     "emitter",
     "emitter_tree",
@@ -51,6 +54,7 @@ pub const TWINS_TO_COME: [&str; 11] = [
     "lens",
     "mip",
     "scatter",
+    "virtual_light",
 ];
 
 #[cfg(test)]

@@ -40,13 +40,13 @@
 //! }
 //! ```
 
-pub use lightcuts_import::{ImportError, ImportOptions, Imported, load};
+pub use lightcuts_import::{AnyScene, ImportError, ImportOptions, Imported, load, load_any};
 pub use lightcuts_render::{
-    Monitor, Options, PerStation, Rendering, Settings, SettingsError, Simd, Stage, Station, Stations, Stats, Unwatched,
-    VplCsvError, device, render, render_on, vpls_from_csv, vpls_to_csv,
+    Monitor, Options, PerStation, PhysicalRendering, Rendering, Settings, SettingsError, Simd, Stage, Station,
+    Stations, Stats, Unwatched, VplCsvError, device, render, render_on, render_physical, vpls_from_csv, vpls_to_csv,
 };
 pub use lightcuts_scene::SceneDesc;
-pub use lightcuts_world::{World, WorldError};
+pub use lightcuts_world::{PhysicalWorld, World, WorldError};
 
 /// GPUs: adapters, devices, and who runs which station.
 pub mod gpu {

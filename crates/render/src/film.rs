@@ -110,10 +110,15 @@ impl Film {
         }
     }
 
-    /// The colour of a pixel: weighted mean, at most 1; black where no sample fell.
-    pub(crate) fn color(&self, i: usize, j: usize) -> Vec3 {
+    /// The colour of a pixel: weighted mean; black where no sample fell.
+    pub(crate) fn mean(&self, i: usize, j: usize) -> Vec3 {
         let sum = self.sums[j * self.width + i];
-        if sum.w == 0.0 { Vec3::ZERO } else { (sum.xyz() / sum.w).min(Vec3::ONE) }
+        if sum.w == 0.0 { Vec3::ZERO } else { sum.xyz() / sum.w }
+    }
+
+    /// The same, at most 1.
+    pub(crate) fn color(&self, i: usize, j: usize) -> Vec3 {
+        self.mean(i, j).min(Vec3::ONE)
     }
 }
 

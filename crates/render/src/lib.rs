@@ -19,6 +19,7 @@ mod original_pass;
 mod packed_tree;
 mod pass;
 mod photon_map;
+mod physical;
 mod ray_tree;
 mod rendering;
 mod sampler;
@@ -31,10 +32,11 @@ mod vpl_csv;
 pub use cpu::Simd;
 pub use lightcuts_kernel::light::Vpl;
 pub use monitor::{Monitor, Stage, Unwatched};
+pub use physical::{PhysicalRendering, render_physical};
 pub use rendering::Rendering;
 pub use settings::{
-    AmbientOcclusion, Bloom, Caustics, Display, Filter, FilterKind, Gather, ImageSize, Model, Run, Sampling, Settings,
-    SettingsError, Strategy, TomlFault, ToneMappingKind, VplPlacement, overlay, value_at,
+    AmbientOcclusion, Bloom, Caustics, Display, Filter, FilterKind, Gather, ImageSize, Integrator, Model, Physical,
+    Run, Sampling, Settings, SettingsError, Strategy, TomlFault, ToneMappingKind, VplPlacement, overlay, value_at,
 };
 pub use stations::{PerStation, Station, Stations};
 pub use stats::{PassTime, Rays, StationDevice, Stats, TreeVisits};

@@ -30,6 +30,8 @@ pub enum Stage {
     LightTree,
     /// Light of the VPLs.
     SecondPass,
+    /// Passes of the physical model.
+    Samples,
     /// From samples to the finished picture.
     Develop,
 }
@@ -42,6 +44,7 @@ impl Stage {
             Self::Photons => "photons",
             Self::LightTree => "light_tree",
             Self::SecondPass => "second_pass",
+            Self::Samples => "samples",
             Self::Develop => "develop",
         }
     }

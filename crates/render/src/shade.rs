@@ -135,7 +135,10 @@ impl<'a> Shader<'a> {
         let candidates = &mut self.candidates;
         let visits = match vpls.strategy {
             Strategy::All => TreeVisits::default(),
-            Strategy::Lightcuts => select(tree, self.tracer.avx2, point, vpls.threshold, candidates),
+            // `stochastic` is of the physical model; settings with it are not rendered here.
+            Strategy::Lightcuts | Strategy::Stochastic => {
+                select(tree, self.tracer.avx2, point, vpls.threshold, candidates)
+            }
             Strategy::LightcutsExhaustive => select_exhaustively(tree, candidates),
         };
         let receiver = Receiver { point, normal: surface.normal, diffuse: material.diffuse, epsilon: *epsilon };

@@ -13,6 +13,9 @@ pub const MAX_EMITTERS: u64 = 1 << 20;
 /// Largest magnitude of a colour, ratio or exponent.
 const MAX_FACTOR: f32 = 1e6;
 
+/// Greatest radiance, intensity or irradiance.
+const MAX_LIGHT: f32 = 1e15;
+
 /// Least squared length of a direction; and of the sine between two directions that must not be parallel.
 const MIN_DIRECTION_SQ: f32 = 1e-12;
 
@@ -145,6 +148,13 @@ impl Check {
     pub(crate) fn factor(&mut self, field: &'static str, value: f32) {
         if !(0.0..=MAX_FACTOR).contains(&value) {
             self.issue(field, format!("is {value}; expected a number from 0 to {MAX_FACTOR:e}"));
+        }
+    }
+
+    /// Light in a physical unit.
+    pub(crate) fn light(&mut self, field: &'static str, value: Vec3) {
+        if !value.to_array().iter().all(|c| (0.0..=MAX_LIGHT).contains(c)) {
+            self.issue(field, format!("is {value}; expected three numbers from 0 to {MAX_LIGHT:e}"));
         }
     }
 

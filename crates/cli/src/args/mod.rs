@@ -5,7 +5,9 @@ mod device;
 mod display;
 mod effects;
 mod experiment;
+mod heatmap;
 mod lights;
+mod physical;
 mod picture;
 mod render;
 mod report;
@@ -16,6 +18,7 @@ mod value;
 pub(crate) use compare::{ChannelOrder, CompareArgs, InputArgs};
 pub(crate) use device::{DeviceArgs, DevicesArgs};
 pub(crate) use experiment::ExperimentArgs;
+pub(crate) use heatmap::HeatmapArgs;
 pub(crate) use render::{
     JobArgs, OutputArgs, PerformanceArgs, ProgressStyle, RenderArgs, SimdChoice, TalkArgs, ThreadArgs,
 };
@@ -69,6 +72,9 @@ pub(crate) enum Command {
     /// Say how far two pictures differ.
     #[command(after_help = compare::AFTER_HELP)]
     Compare(Box<CompareArgs>),
+    /// Show a layer of a picture (cut sizes, variance, depth, ...) in false colours with a scale.
+    #[command(after_help = AFTER_HELP)]
+    Heatmap(HeatmapArgs),
     /// Render what an experiment file asks for and keep times, counts and differences, one line per render.
     #[command(after_help = AFTER_HELP)]
     Experiment(ExperimentArgs),
@@ -136,4 +142,6 @@ pub(crate) struct SettingFlags {
     bloom: display::BloomFlags,
     #[command(flatten)]
     display: display::DisplayFlags,
+    #[command(flatten)]
+    physical: physical::PhysicalFlags,
 }

@@ -9,11 +9,12 @@ use serde::{Serialize, Serializer};
 #[command(next_help_heading = "Run")]
 #[serde(rename_all = "kebab-case")]
 pub(crate) struct RunFlags {
-    /// Model of light [default: thesis]
+    /// Model of light [default: thesis, or physical for scenes in TOML]
     ///
     /// `thesis` is the Phong model of Tong Zhang's thesis (Purdue, 2011): no falloff with distance, every ray's colour
-    /// clamped to 1. It is the only model so far.
-    #[arg(long, value_parser = ["thesis"])]
+    /// clamped to 1. `physical` is radiometric: light falls off, materials keep energy, and the picture converges to the
+    /// truth; thesis scenes can be rendered with it too.
+    #[arg(long, value_parser = ["thesis", "physical"])]
     model: Option<String>,
     /// Draw the original program's random numbers, with its arithmetic and its defects [default: false]
     ///

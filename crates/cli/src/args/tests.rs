@@ -102,7 +102,7 @@ fn flags_offer_every_word_that_the_settings_accept() {
         assert_eq!(words, expected, "{key}");
         flags_with_words += 1;
     }
-    assert_eq!(flags_with_words, 6);
+    assert_eq!(flags_with_words, 7);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Values that are more than a number or a word.
 
-use serde::Serializer;
+use serde::{Serialize, Serializer};
 use std::str::FromStr;
 
 /// Width and height, written `640x480`.
@@ -20,6 +20,29 @@ impl FromStr for Size {
     }
 }
 
+/// A time in seconds, written `90`, `90s`, `1.5m` or `1h`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(transparent)]
+pub(super) struct Seconds(f32);
+
+impl FromStr for Seconds {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let units = [("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+        let (number, factor) = units
+            .into_iter()
+            .find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, factor)))
+            .unwrap_or((text, 1.0));
+        let number: f32 = number.trim().parse().map_err(|_| "expected a time such as 10s, 2m or 1.5h")?;
+        if number.is_finite() && number >= 0.0 {
+            Ok(Self(number * factor))
+        } else {
+            Err("expected a time of 0 or more".to_owned())
+        }
+    }
+}
+
 /// For a flag that switches off what its key switches on.
 #[expect(clippy::ref_option, clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
 pub(super) fn negated<S: Serializer>(flag: &Option<bool>, serializer: S) -> Result<S::Ok, S::Error> {
@@ -32,6 +55,15 @@ pub(super) fn negated<S: Serializer>(flag: &Option<bool>, serializer: S) -> Resu
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_have_units() {
+        let seconds = |text: &str| text.parse::<Seconds>().map(|Seconds(s)| s);
+        assert_eq!([seconds("90"), seconds("90s"), seconds("1.5m"), seconds("2h")], [90.0, 90.0, 90.0, 7200.0].map(Ok));
+        for text in ["", "s", "-1", "1d", "inf", "nans"] {
+            assert!(text.parse::<Seconds>().is_err(), "{text}");
+        }
+    }
 
     #[test]
     fn sizes_are_two_numbers() {

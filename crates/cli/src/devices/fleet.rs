@@ -40,3 +40,15 @@ pub(crate) fn open<'w>(
     }
     Ok(fleet)
 }
+
+/// Fails if another device than the CPU was asked for: nothing else renders the physical model.
+pub(crate) fn require_cpu(args: &DeviceArgs) -> Result<(), Failure> {
+    let is_other = |choice: &&DeviceChoice| matches!(choice, DeviceChoice::Gpu | DeviceChoice::Named(_));
+    match args.wanted().each().iter().find(is_other) {
+        None => Ok(()),
+        Some(choice) => Err(Failure::usage(
+            format!("the physical model is rendered by the CPU only, not by `{choice}`"),
+            "leave out --device and --station-device",
+        )),
+    }
+}

@@ -5,7 +5,7 @@ mod list;
 mod text;
 mod work;
 
-pub(crate) use fleet::{assigned, open};
+pub(crate) use fleet::{assigned, open, require_cpu};
 pub(crate) use work::{GpuWork, log};
 
 use crate::args::DevicesArgs;

@@ -1,5 +1,6 @@
 //! The command `info`: what was understood of a scene, what a picture holds.
 
+mod physical;
 mod picture;
 mod scene;
 mod text;
@@ -9,7 +10,7 @@ use crate::console;
 use crate::exit::{Exit, Failure};
 use crate::job::has_extension;
 use crate::plan::{load, search_path};
-use lightcuts::World;
+use lightcuts::{AnyScene, Imported, PhysicalWorld, World};
 use serde::Serialize;
 
 /// Runs the command.
@@ -19,8 +20,19 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Exit, Failure> {
         return show(&info, args.json, text::of_picture);
     }
     let imported = load(&args.path, &search_path(&args.search, std::iter::empty()))?;
-    let world = World::new(&imported.scene).map_err(Failure::input)?;
-    show(&scene::SceneInfo::new(&imported, &world), args.json, text::of_scene)
+    let Imported { scene, warnings, files } = imported;
+    match scene {
+        AnyScene::Thesis(scene) => {
+            let world = World::new(&scene).map_err(Failure::input)?;
+            let info = scene::SceneInfo::new(&Imported { scene, warnings, files }, &world);
+            show(&info, args.json, text::of_scene)
+        }
+        AnyScene::Physical(scene) => {
+            let world = PhysicalWorld::new(&scene).map_err(Failure::input)?;
+            let info = physical::PhysicalInfo::new(&Imported { scene, warnings, files }, &world);
+            show(&info, args.json, text::of_physical)
+        }
+    }
 }
 
 fn show<T: Serialize>(info: &T, as_json: bool, text: impl Fn(&T) -> String) -> Result<Exit, Failure> {

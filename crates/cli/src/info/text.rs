@@ -1,5 +1,6 @@
 //! The same for people.
 
+use super::physical::PhysicalInfo;
 use super::picture::PictureInfo;
 use super::scene::{Camera, Object, Parameter, SceneInfo, Texture};
 
@@ -26,6 +27,38 @@ pub(super) fn of_scene(info: &SceneInfo) -> String {
     lines.push(line("recommended", &recommended(&info.recommended)));
     lines.extend(info.files.iter().map(|file| line("read", file)));
     // The warnings themselves went to standard error.
+    lines.push(line("warnings", &info.warnings.len().to_string()));
+    lines.join("")
+}
+
+/// Of a scene of the physical model.
+pub(super) fn of_physical(info: &PhysicalInfo) -> String {
+    let kinds = |counts: &std::collections::BTreeMap<&str, usize>| -> Vec<String> {
+        counts.iter().map(|(kind, number)| format!("{number} {kind}")).collect()
+    };
+    let mut lights = kinds(&info.lights);
+    if info.luminous > 0 {
+        lights.push(count(info.luminous, "luminous surface"));
+    }
+    if info.has_environment {
+        lights.push("environment".to_owned());
+    }
+    let or_none = |list: Vec<String>| if list.is_empty() { "none".to_owned() } else { list.join(", ") };
+    let amounts = [(info.triangles, "triangle"), (info.spheres, "sphere"), (info.squares, "square")];
+    let mut lines = vec![
+        line("scene", &info.name),
+        line("model", "physical"),
+        line("lights", &or_none(lights)),
+        line("objects", &info.objects.to_string()),
+        line("materials", &or_none(kinds(&info.materials))),
+        line("images", &info.images.to_string()),
+        line("totals", &amounts.map(|(n, name)| count(n, name)).join(", ")),
+        line(
+            "bounds",
+            &info.bounds.map_or("nothing to see".to_owned(), |[a, b]| format!("{} to {}", vector(a), vector(b))),
+        ),
+    ];
+    lines.extend(info.files.iter().map(|file| line("read", file)));
     lines.push(line("warnings", &info.warnings.len().to_string()));
     lines.join("")
 }

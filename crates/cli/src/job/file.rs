@@ -47,9 +47,18 @@ pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }
 
-/// Whether a file of this name holds a job and not a scene.
+/// Whether a file holds a job and not a scene: pictures do, and TOML that does not say that it is a scene.
 pub(crate) fn is_job_carrier(path: &Path) -> bool {
-    ["exr", "png", "toml"].iter().any(|extension| has_extension(path, extension))
+    ["exr", "png"].iter().any(|extension| has_extension(path, extension))
+        || (has_extension(path, "toml") && !is_scene_document(path))
+}
+
+/// Whether a TOML file names the format of scenes. One that cannot be read is a job: reading it will tell why.
+fn is_scene_document(path: &Path) -> bool {
+    let names_format = |line: &str| {
+        line.split_once('=').is_some_and(|(key, value)| key.trim() == "format" && value.contains("lightcuts-scene"))
+    };
+    path.is_file() && std::fs::read_to_string(path).is_ok_and(|text| text.lines().any(names_format))
 }
 
 impl JobFile {

@@ -81,7 +81,7 @@ fn bad_usage_is_told_apart() {
         "render scene.txt --samples x",
         "render scene.txt --threshold -1",
         "render scene.txt --threshold nan",
-        "render scene.txt --model physical",
+        "render scene.txt --model magical",
         "render scene.txt --size 0x5",
         "render scene.txt --size 65536x65536",
         "render scene.txt --threads 100000",

@@ -12,6 +12,7 @@ mod jobs;
 mod malformed;
 mod other_commands;
 mod outputs;
+mod physical;
 mod rendering;
 mod report;
 mod support;

@@ -1,5 +1,6 @@
 //! MTL material libraries.
 
+use super::map_file::map_file;
 use crate::Fault;
 use crate::number::{NUMBER_EXAMPLE, parse_number};
 use crate::report::Report;
@@ -69,7 +70,26 @@ pub(crate) struct LibraryMaterial {
     pub(crate) texture: Option<(String, TextureMode, Range<usize>)>,
     /// Where each field of `desc` was given.
     spans: Vec<(&'static str, Range<usize>)>,
+    /// The lines with keywords that the thesis' model has no use for, unread.
+    others: Vec<(&'static str, Range<usize>)>,
     defined: Range<usize>,
+}
+
+impl LibraryMaterial {
+    /// Whether the library gives a field of `desc`.
+    pub(crate) fn gives(&self, field: &str) -> bool {
+        self.spans.iter().any(|(name, _)| *name == field)
+    }
+
+    /// The line with a keyword that the thesis' model has no use for.
+    pub(crate) fn other(&self, keyword: &str) -> Option<Range<usize>> {
+        self.others.iter().find(|(name, _)| *name == keyword).map(|(_, span)| span.clone())
+    }
+
+    /// All such keywords, in the order of their last lines.
+    pub(crate) fn others(&self) -> impl Iterator<Item = &'static str> {
+        self.others.iter().map(|(keyword, _)| *keyword)
+    }
 }
 
 impl Library {
@@ -87,16 +107,28 @@ impl Library {
         self.source.fault(span, message)
     }
 
-    /// A fault about a field of a material.
+    /// A fault about a field of a material, or another keyword of it.
     pub(crate) fn field_fault(&self, material: &str, field: &str, message: &str) -> Fault {
         let span = self.get(material).map_or(0..0, |material| {
-            material
-                .spans
-                .iter()
-                .find(|(name, _)| *name == field)
-                .map_or(material.defined.clone(), |(_, span)| span.clone())
+            let mut given = material.spans.iter().chain(&material.others);
+            given.find(|(name, _)| *name == field).map_or(material.defined.clone(), |(_, span)| span.clone())
         });
         self.fault(span, message)
+    }
+
+    /// The numbers of a line of the library.
+    pub(crate) fn numbers(&self, line: Range<usize>, report: &mut Report) -> Option<Vec3> {
+        read_numbers(&self.source, report, self.value(&line), line)
+    }
+
+    /// The file name of a line of the library that is about a map.
+    pub(crate) fn file(&self, line: Range<usize>) -> &str {
+        map_file(self.value(&line)).0
+    }
+
+    fn value(&self, line: &Range<usize>) -> &str {
+        let line = &self.source.text()[line.clone()];
+        line.split_once(|c: char| c.is_ascii_whitespace()).map_or("", |(_, value)| value.trim_ascii())
     }
 
     /// Reads a library. Numbers that are none are errors; all else that is odd is a warning.
@@ -161,11 +193,22 @@ impl Parser<'_> {
             "newmtl" => {
                 self.store();
                 let desc = MaterialDesc { name: value.to_owned(), ..MaterialDesc::default() };
-                self.current = Some(LibraryMaterial { desc, texture: None, spans: Vec::new(), defined: span });
+                self.current =
+                    Some(LibraryMaterial { desc, texture: None, spans: vec![], others: vec![], defined: span });
             }
             "Ka" | "Kd" | "Ks" | "Ns" | "map_Kd" => self.value(keyword, value, span),
-            _ if IGNORED.contains(&keyword) => {}
-            _ => self.unknown_keyword(keyword, start..start + keyword.len()),
+            _ => match IGNORED.iter().find(|ignored| **ignored == keyword) {
+                Some(ignored) => self.other(ignored, span),
+                None => self.unknown_keyword(keyword, start..start + keyword.len()),
+            },
+        }
+    }
+
+    /// Remembers the last line with a keyword.
+    fn other(&mut self, keyword: &'static str, span: Range<usize>) {
+        if let Some(material) = &mut self.current {
+            material.others.retain(|(known, _)| *known != keyword);
+            material.others.push((keyword, span));
         }
     }
 
@@ -189,7 +232,7 @@ impl Parser<'_> {
             if file.is_empty() {
                 self.warn(span, "map_Kd names no file");
             }
-        } else if let Some(numbers) = self.numbers(value, span.clone()) {
+        } else if let Some(numbers) = read_numbers(self.source, self.report, value, span.clone()) {
             let field = match keyword {
                 "Ka" => "ambient",
                 "Kd" => "diffuse",
@@ -207,72 +250,38 @@ impl Parser<'_> {
         }
         self.current = Some(material);
     }
+}
 
-    /// Up to three numbers; one alone stands for all three, as the format has it.
-    fn numbers(&mut self, value: &str, span: Range<usize>) -> Option<Vec3> {
-        let value_start = span.end - value.len();
-        let mut numbers = [0.0; 3];
-        let mut count = 0;
-        for word in value.split_ascii_whitespace().take(3) {
-            if count == 0 && matches!(word, "spectral" | "xyz") {
-                self.warn(span, &format!("`{word}` colours are not known; the value is ignored"));
+/// Up to three numbers; one alone stands for all three, as the format has it. `value` stands at the end of `span`.
+fn read_numbers(source: &Source<'_>, report: &mut Report, value: &str, span: Range<usize>) -> Option<Vec3> {
+    let value_start = span.end - value.len();
+    let mut numbers = [0.0; 3];
+    let mut count = 0;
+    for word in value.split_ascii_whitespace().take(3) {
+        if count == 0 && matches!(word, "spectral" | "xyz") {
+            let message = format!("`{word}` colours are not known; the value is ignored");
+            report.warn(|| source.fault(span, &message));
+            return None;
+        }
+        match parse_number(word) {
+            Ok(number) => numbers[count] = number,
+            Err(error) => {
+                let start = value_start + (word.as_ptr() as usize - value.as_ptr() as usize);
+                let message = error.message(word);
+                report.error(|| source.fault(start..start + word.len(), &message).expected(NUMBER_EXAMPLE));
                 return None;
             }
-            match parse_number(word) {
-                Ok(number) => numbers[count] = number,
-                Err(error) => {
-                    let start = value_start + (word.as_ptr() as usize - value.as_ptr() as usize);
-                    let message = error.message(word);
-                    self.report
-                        .error(|| self.source.fault(start..start + word.len(), &message).expected(NUMBER_EXAMPLE));
-                    return None;
-                }
-            }
-            count += 1;
         }
-        match count {
-            0 => {
-                self.report.error(|| self.source.fault(span, "the value is missing").expected(NUMBER_EXAMPLE));
-                None
-            }
-            3 => Some(Vec3::from_array(numbers)),
-            _ => Some(Vec3::new(numbers[0], if count == 2 { numbers[1] } else { numbers[0] }, numbers[0])),
-        }
+        count += 1;
     }
-}
-
-/// The file name after the options of a map, and how it is laid out: tiled, unless it is clamped.
-fn map_file(value: &str) -> (&str, TextureMode) {
-    let mut rest = value;
-    let mut mode = TextureMode::Repeat;
-    while let Some((option, after)) = next_word(rest).filter(|(word, _)| word.starts_with('-')) {
-        let arguments = match option {
-            "-o" | "-s" | "-t" => 1..=3,
-            "-mm" => 2..=2,
-            "-blendu" | "-blendv" | "-cc" | "-clamp" | "-bm" | "-boost" | "-texres" | "-imfchan" | "-type"
-            | "-colorspace" => 1..=1,
-            // A file name that starts with a hyphen.
-            _ => break,
-        };
-        rest = after;
-        for i in 0..*arguments.end() {
-            let Some((word, after)) = next_word(rest) else { break };
-            if i >= *arguments.start() && parse_number(word).is_err() {
-                break;
-            }
-            if option == "-clamp" && word == "on" {
-                mode = TextureMode::Straight;
-            }
-            rest = after;
+    match count {
+        0 => {
+            report.error(|| source.fault(span, "the value is missing").expected(NUMBER_EXAMPLE));
+            None
         }
+        3 => Some(Vec3::from_array(numbers)),
+        _ => Some(Vec3::new(numbers[0], if count == 2 { numbers[1] } else { numbers[0] }, numbers[0])),
     }
-    (rest.trim_ascii(), mode)
-}
-
-fn next_word(text: &str) -> Option<(&str, &str)> {
-    let text = text.trim_ascii_start();
-    let word = text.split_ascii_whitespace().next()?;
-    Some((word, &text[word.len()..]))
 }
 
 #[cfg(test)]
@@ -285,23 +294,6 @@ mod tests {
         match report.finish() {
             Ok(warnings) => (library, Vec::new(), warnings.iter().map(ToString::to_string).collect()),
             Err(faults) => (library, vec![faults.to_string()], Vec::new()),
-        }
-    }
-
-    #[test]
-    fn map_options_are_skipped() {
-        use TextureMode::{Repeat, Straight};
-        for (value, file, mode) in [
-            ("a.png", "a.png", Repeat),
-            ("texture 01.png", "texture 01.png", Repeat),
-            ("-o 0.1 diffuse.jpg", "diffuse.jpg", Repeat),
-            ("-s 1 1 1 -clamp on my tex.png", "my tex.png", Straight),
-            ("-mm 0 1 -blendu on  7.png", "7.png", Repeat),
-            ("-type sphere -colorspace sRGB -o 1 2 x.png", "x.png", Repeat),
-            ("-odd.png", "-odd.png", Repeat),
-            ("-o", "", Repeat),
-        ] {
-            assert_eq!(map_file(value), (file, mode), "{value}");
         }
     }
 

@@ -1,13 +1,13 @@
 //! The lines of an OBJ file.
 
-use super::lines::{LineError, Lines};
-use super::{MaterialRun, Model};
 use crate::Fault;
+use crate::lines::{Lines, ReadError, words};
+use crate::model::{self, MaterialRun, Model};
 use crate::number::{NUMBER_EXAMPLE, parse_number};
 use crate::report::Report;
 use crate::resolver::FileError;
 use glam::Vec3;
-use lightcuts_scene::{MeshDesc, MeshTriangle};
+use lightcuts_scene::MeshTriangle;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
@@ -103,11 +103,11 @@ pub(crate) fn parse(
         match lines.advance() {
             Ok(true) if !parser.is_done() => parser.line(&lines),
             Ok(_) => break,
-            Err(LineError::Content(fault)) => {
+            Err(ReadError::Content(fault)) => {
                 parser.error(|| *fault);
                 break;
             }
-            Err(LineError::File(error)) => return Err(error),
+            Err(ReadError::File(error)) => return Err(error),
         }
     }
     Ok(parser.finish())
@@ -128,9 +128,8 @@ struct Parser<'a> {
 
 impl<'a> Parser<'a> {
     fn new(max_elements: usize, report: &'a mut Report) -> Self {
-        let model = Model { mesh: MeshDesc::default(), runs: Vec::new(), materials: Vec::new(), libraries: Vec::new() };
         Self {
-            model,
+            model: Model::default(),
             report,
             max_elements,
             failed: false,
@@ -339,12 +338,12 @@ impl<'a> Parser<'a> {
     }
 
     fn elements(&self) -> usize {
-        super::elements(&self.model.mesh)
+        model::elements(&self.model.mesh)
     }
 
     fn check_size(&mut self, lines: &Lines<'_>, start: usize) {
         if self.elements() > self.max_elements {
-            let message = format!("the meshes have more than {} vertices and triangles", self.max_elements);
+            let message = model::too_large(self.max_elements);
             self.error(|| lines.fault(start..start + 1, &message).expected("a smaller model"));
             self.stopped = true;
         }
@@ -361,13 +360,4 @@ impl<'a> Parser<'a> {
         }
         (!self.failed).then_some(self.model)
     }
-}
-
-/// The words of a part of `text`, as spans of `text`.
-fn words(text: &str, range: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    let base = text.as_ptr() as usize;
-    text[range].split_ascii_whitespace().map(move |word| {
-        let start = word.as_ptr() as usize - base;
-        start..start + word.len()
-    })
 }

@@ -1,12 +1,12 @@
 //! From directives to a scene.
 
+use super::assets::{Assets, MeshUse};
 use super::camera::{self, CAMERA_EXAMPLE};
 use super::comment;
+use super::draft::{Draft, MaterialOrigin};
 use super::field::{Directive, Reader};
 use super::scan::{Item, Scanner, SyntaxError};
 use super::{light, material, mesh, primitive, spans};
-use crate::assets::{Assets, MeshUse};
-use crate::draft::{Draft, MaterialOrigin};
 use crate::resolver::Resolver;
 use crate::source::Source;
 use crate::{Fault, ImportError, Imported, Limits};
@@ -72,7 +72,7 @@ impl<'t> Builder<'t> {
             }
         }
         let warnings = self.draft.report.finish()?;
-        Ok(Imported { scene: self.draft.scene, warnings, files: self.assets.files })
+        Ok(Imported { scene: self.draft.scene, warnings, files: self.assets.files.opened })
     }
 
     fn error(&mut self, span: Range<usize>, message: &str, expected: &str) {

@@ -26,9 +26,11 @@
 //! given twice the first counts; they and unknown ones cause a warning. A file name ends at a `|`, at the line's end, or
 //! after its extension where a field follows, so it may contain blanks.
 
+mod assets;
 mod build;
 mod camera;
 mod comment;
+mod draft;
 mod field;
 mod light;
 mod material;

@@ -2,9 +2,11 @@
 //!
 //! The same structs are the TOML job file's tables; unknown keys are errors.
 
+mod physical;
 mod tables;
 mod validate;
 
+pub use physical::{Integrator, Physical};
 pub use tables::{TomlFault, overlay, value_at};
 pub use validate::SettingsError;
 
@@ -36,6 +38,9 @@ pub struct Settings {
     pub bloom: Bloom,
     /// From linear light to displayed values.
     pub display: Display,
+    /// The physical model; of the thesis' model nothing here matters, and of the physical one neither VPL placement nor
+    /// effects.
+    pub physical: Physical,
 }
 
 /// Model of light and whole-run switches.
@@ -65,6 +70,8 @@ pub enum Model {
     /// The thesis' Phong model without falloff, clamped at every step.
     #[default]
     Thesis,
+    /// Radiometric: converges to the rendering equation.
+    Physical,
 }
 
 /// Size of the picture.
@@ -197,10 +204,13 @@ impl Default for Gather {
 pub enum Strategy {
     /// Every VPL.
     All,
-    /// The thesis' lightcuts: every VPL whose relevance reaches the threshold, found through a bounded tree.
+    /// The thesis' lightcuts: every VPL whose relevance reaches the threshold, found through a bounded tree. In the physical
+    /// model those of 2005: clusters by error bound.
     Lightcuts,
-    /// The same VPLs as `lightcuts`, found by testing every one: the plain version, for comparison.
+    /// The same VPLs as `lightcuts`, found by testing every one: the plain version, for comparison. Thesis' model only.
     LightcutsExhaustive,
+    /// A few, drawn down the tree by what they may send (after Yuksel 2019). Physical model only.
+    Stochastic,
 }
 
 /// Ambient occlusion of the first pass. The original's angular grid decides only the number of rays; they are
@@ -338,6 +348,15 @@ impl Settings {
         if let Some(threshold) = scene.defaults.threshold {
             settings.gather.threshold = threshold.cpu;
         }
+        settings
+    }
+
+    /// The built-in defaults for the physical model.
+    pub fn for_physical() -> Self {
+        let mut settings = Self::default();
+        settings.run.model = Model::Physical;
+        settings.sampling.samples = 64;
+        settings.display.transfer = Transfer::Srgb;
         settings
     }
 

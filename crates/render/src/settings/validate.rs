@@ -1,6 +1,6 @@
 //! The range of every parameter, checked once, so that rendering cannot fail.
 
-use super::{ImageSize, Settings, ToneMappingKind};
+use super::{ImageSize, Model, Settings, Strategy, ToneMappingKind};
 use lightcuts_image::{ImageError, MAX_PIXELS};
 use std::borrow::Cow;
 
@@ -31,12 +31,15 @@ impl Settings {
         number("vpl.min-illumination", self.vpl.min_illumination, 0.0, 3.0)?;
         number("vpl.attenuation", self.vpl.attenuation, 0.0, 1e6)?;
         number("gather.threshold", self.gather.threshold, 0.0, f32::MAX)?;
+        self.validate_physical()?;
         self.validate_effects()
     }
 
     fn validate_sampling(&self) -> Result<(), SettingsError> {
         let sampling = &self.sampling;
-        ensure("sampling.samples", sampling.samples, (1..=4096).contains(&sampling.samples), "1 to 4096")?;
+        let most = if self.run.model == Model::Physical { 1 << 24 } else { 4096 };
+        let samples = sampling.samples;
+        ensure("sampling.samples", samples, (1..=most).contains(&samples), &format!("1 to {most}"))?;
         let adaptive = sampling.adaptive_samples;
         ensure("sampling.adaptive-samples", adaptive, adaptive <= 4096, "0 to 4096")?;
         number("sampling.adaptive-threshold", sampling.adaptive_threshold, 0.0, 1e6)?;
@@ -44,6 +47,25 @@ impl Settings {
         number("filter.alpha", self.filter.alpha, 0.0, 1e3)?;
         number("filter.mitchell-b", self.filter.mitchell_b, -10.0, 10.0)?;
         number("filter.mitchell-c", self.filter.mitchell_c, -10.0, 10.0)
+    }
+
+    fn validate_physical(&self) -> Result<(), SettingsError> {
+        let physical = &self.physical;
+        let reproduces = self.run.reproduce && self.run.model == Model::Physical;
+        ensure("run.reproduce", true, !reproduces, "the thesis' model with it")?;
+        let (strategy, fits) = match self.gather.strategy {
+            Strategy::LightcutsExhaustive => ("lightcuts-exhaustive", self.run.model == Model::Thesis),
+            Strategy::Stochastic => ("stochastic", self.run.model == Model::Physical),
+            Strategy::All | Strategy::Lightcuts => ("", true),
+        };
+        ensure("gather.strategy", strategy, fits, "one that this model of light has")?;
+        number("physical.time-limit", physical.time_limit, 0.0, 1e9)?;
+        number("physical.noise", physical.noise, 0.0, 1e3)?;
+        ensure("physical.vpls", physical.vpls, (1..=1 << 24).contains(&physical.vpls), "1 to 16777216")?;
+        number("physical.cut-error", physical.cut_error, 0.0, 1e3)?;
+        ensure("physical.max-cut", physical.max_cut, physical.max_cut > 0, "1 or more")?;
+        number("physical.clamp", physical.clamp, 0.0, 1.0)?;
+        number("physical.light-scale", physical.light_scale, 0.0, 1e6)
     }
 
     fn validate_effects(&self) -> Result<(), SettingsError> {

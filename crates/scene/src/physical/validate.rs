@@ -32,7 +32,7 @@ impl PhysicalScene {
         }
         if let Some(environment) = &self.environment {
             check.subject = Subject::Environment;
-            check.color("radiance", environment.radiance);
+            check.light("radiance", environment.radiance);
             self.image(environment.image, "image", &mut check);
             check.angle("degrees", environment.degrees, 360.0);
         }
@@ -133,7 +133,7 @@ impl PhysicalScene {
             }
         }
         if let Some(EmissionDesc { radiance, image, .. }) = material.emission {
-            check.color("radiance", radiance);
+            check.light("radiance", radiance);
             self.image(image, "emission", check);
         }
         self.image(material.normal_map, "normal_map", check);
@@ -179,18 +179,18 @@ fn emitter(light: &EmitterDesc, check: &mut Check) {
     match light.kind {
         EmitterKind::Point { position, intensity } => {
             check.point("position", position);
-            check.color("intensity", intensity);
+            check.light("intensity", intensity);
         }
         EmitterKind::Spot { position, direction, intensity, inner_degrees, outer_degrees } => {
             check.point("position", position);
             check.direction("direction", direction);
-            check.color("intensity", intensity);
+            check.light("intensity", intensity);
             check.range("inner_degrees", inner_degrees, (0.0, 180.0));
             check.range("outer_degrees", outer_degrees, (inner_degrees, 180.0));
         }
         EmitterKind::Directional { direction, irradiance } => {
             check.direction("direction", direction);
-            check.color("irradiance", irradiance);
+            check.light("irradiance", irradiance);
         }
     }
 }

@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn cones_are_joined_tightly() {
         let (axis, half) = joined_cones((Vec3::X, 0.1), (Vec3::Y, 0.2));
-        assert!((half - (std::f32::consts::FRAC_PI_2 + 0.3) / 2.0).abs() < 1e-5);
+        assert!((half - f32::midpoint(std::f32::consts::FRAC_PI_2, 0.3)).abs() < 1e-5);
         for (other, own) in [(Vec3::X, 0.1_f32), (Vec3::Y, 0.2)] {
             assert!(axis.dot(other).acos() + own <= half + 1e-4);
         }

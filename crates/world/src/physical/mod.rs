@@ -23,7 +23,7 @@ use lightcuts_kernel::ray::{NONE, normalize_or_zero};
 use lightcuts_kernel::scatter::{Images, Scatter};
 use lightcuts_scene::physical::{PhysicalCamera, PhysicalScene, PhysicalShape, SurfaceId, View};
 
-/// A triangle's plane. 16 bytes.
+/// A triangle's plane. 32 bytes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Face {
@@ -31,6 +31,10 @@ pub struct Face {
     pub normal: Vec3,
     /// Texture coordinates per scene unit: the root of the ratio of both areas.
     pub texture_density: f32,
+    /// Unit direction in which u grows; zero where the triangle has no area in the texture.
+    pub tangent: Vec3,
+    /// Unused.
+    pub padding: f32,
 }
 
 /// Everything that rendering with the physical model reads, as flat slices. Immutable once made.
@@ -191,7 +195,9 @@ fn faces(builder: &Builder) -> Vec<Face> {
         let normal = normalize_or_zero(cross);
         let mean = corners.normals[0] + corners.normals[1] + corners.normals[2];
         let normal = if normal.dot(mean) < 0.0 { -normal } else { normal };
-        Face { normal, texture_density: (in_texture.abs() / area).sqrt() }
+        let along_u = (points[1] - points[0]) * (c[1] - a[1]) - (points[2] - points[0]) * (b[1] - a[1]);
+        let tangent = normalize_or_zero(along_u * in_texture.signum());
+        Face { normal, texture_density: (in_texture.abs() / area).sqrt(), tangent, padding: 0.0 }
     };
     builder.points.iter().zip(&builder.corners).map(of).collect()
 }

@@ -58,6 +58,7 @@ fn instances_and_lights_become_flat() {
     assert_eq!(world.primitive_emitters, [NONE, 0, 1, 2]);
     // A mirrored instance keeps its side, and a larger one has fewer texels per unit.
     assert_eq!([world.faces[0].normal, world.faces[1].normal], [Vec3::Z; 2]);
+    assert_eq!([world.faces[0].tangent, world.faces[1].tangent], [Vec3::X, Vec3::NEG_X]);
     assert!((world.faces[0].texture_density - 2.0).abs() < 1e-5);
     assert!((world.faces[1].texture_density - 1.0).abs() < 1e-5);
     assert_eq!([world.emitters[0].area, world.emitters[1].area], [0.5, 2.0]);

@@ -7,21 +7,21 @@ use std::rc::Rc;
 
 /// A scene that grows, with what is needed to say where its parts come from. Places are bytes of the scene's text.
 #[derive(Debug, Default)]
-pub(crate) struct Draft {
-    pub(crate) scene: SceneDesc,
-    pub(crate) report: Report,
+pub(super) struct Draft {
+    pub(super) scene: SceneDesc,
+    pub(super) report: Report,
     /// One per material of the scene.
-    pub(crate) materials: Vec<MaterialOrigin>,
+    pub(super) materials: Vec<MaterialOrigin>,
     /// Start of the directive that first used each mesh of the scene.
-    pub(crate) meshes: Vec<usize>,
+    pub(super) meshes: Vec<usize>,
     /// Start of the directive of each light, of each object.
-    pub(crate) lights: Vec<usize>,
-    pub(crate) objects: Vec<usize>,
+    pub(super) lights: Vec<usize>,
+    pub(super) objects: Vec<usize>,
 }
 
 /// Where a material was described.
 #[derive(Debug, Clone)]
-pub(crate) enum MaterialOrigin {
+pub(super) enum MaterialOrigin {
     /// In the directive that starts there.
     Directive(usize),
     /// Colours and exponent in a library, under this name; ratios in the directive.

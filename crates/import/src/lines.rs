@@ -12,9 +12,11 @@ const MAX_LINE: usize = 16 << 20;
 
 /// Reads logical lines.
 pub(crate) struct Lines<'a> {
-    reader: BufReader<Box<dyn Read>>,
+    reader: BufReader<Box<dyn Read + 'a>>,
     path: &'a Path,
     name: &'a str,
+    /// What the file should be, for messages: `an OBJ model`.
+    what: &'static str,
     limit: u64,
     length: u64,
     number: u32,
@@ -24,19 +26,26 @@ pub(crate) struct Lines<'a> {
     parts: Vec<(usize, u32)>,
 }
 
-/// What came instead of a line.
-pub(crate) enum LineError {
+/// Why reading ends early.
+pub(crate) enum ReadError {
     File(FileError),
     Content(Box<Fault>),
 }
 
 impl<'a> Lines<'a> {
-    pub(crate) fn new(reader: Box<dyn Read>, path: &'a Path, name: &'a str, limit: u64) -> Self {
+    pub(crate) fn new(
+        reader: Box<dyn Read + 'a>,
+        path: &'a Path,
+        name: &'a str,
+        limit: u64,
+        what: &'static str,
+    ) -> Self {
         let reader = BufReader::with_capacity(1 << 16, reader);
         Self {
             reader,
             path,
             name,
+            what,
             limit,
             length: 0,
             number: 0,
@@ -46,8 +55,15 @@ impl<'a> Lines<'a> {
         }
     }
 
+    /// The same, where `lines` lines and `bytes` bytes of the file were read before.
+    pub(crate) fn after(mut self, lines: u32, bytes: u64) -> Self {
+        self.number = lines;
+        self.length = bytes;
+        self
+    }
+
     /// Moves to the next line; false at the end of the file.
-    pub(super) fn advance(&mut self) -> Result<bool, LineError> {
+    pub(crate) fn advance(&mut self) -> Result<bool, ReadError> {
         self.text.clear();
         self.parts.clear();
         loop {
@@ -59,11 +75,11 @@ impl<'a> Lines<'a> {
             if let Some(byte) = first_binary_byte(&self.raw) {
                 let start = self.text.len() - decode_line(&self.raw[byte..]).len();
                 let message = format!("byte {:#04x} shows that this is not text", self.raw[byte]);
-                return Err(self.content_error(start..start + 1, &message, "an OBJ model in text form"));
+                return Err(self.content_error(start..start + 1, &message));
             }
             if self.text.len() > MAX_LINE {
                 let message = format!("the line is longer than {MAX_LINE} bytes");
-                return Err(self.content_error(0..1, &message, "an OBJ model in text form"));
+                return Err(self.content_error(0..1, &message));
             }
             if !self.text.ends_with('\\') {
                 return Ok(true);
@@ -75,12 +91,12 @@ impl<'a> Lines<'a> {
     }
 
     /// The current line, without line break and comment sign interpretation.
-    pub(super) fn text(&self) -> &str {
+    pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
     /// A fault at `span` of [`Self::text`].
-    pub(super) fn fault(&self, span: Range<usize>, message: &str) -> Fault {
+    pub(crate) fn fault(&self, span: Range<usize>, message: &str) -> Fault {
         let part = self.parts.partition_point(|(start, _)| *start <= span.start).saturating_sub(1);
         let (start, number) = self.parts.get(part).copied().unwrap_or((0, self.number));
         let end = self.parts.get(part + 1).map_or(self.text.len(), |(end, _)| *end);
@@ -88,21 +104,21 @@ impl<'a> Lines<'a> {
         Fault::new(self.name, number, &self.text[start..end], within, message)
     }
 
-    fn content_error(&self, span: Range<usize>, message: &str, expected: &str) -> LineError {
-        LineError::Content(Box::new(self.fault(span, message).expected(expected)))
+    fn content_error(&self, span: Range<usize>, message: &str) -> ReadError {
+        ReadError::Content(Box::new(self.fault(span, message).expected(&format!("{} in text form", self.what))))
     }
 
     /// Reads one line of the file into `raw`, without its end; false at the end of the file.
-    fn read_raw(&mut self) -> Result<bool, LineError> {
+    fn read_raw(&mut self) -> Result<bool, ReadError> {
         self.raw.clear();
         let path = || self.path.to_path_buf();
         let mut part = (&mut self.reader).take(MAX_LINE as u64 + 1);
         let count = part
             .read_until(b'\n', &mut self.raw)
-            .map_err(|error| LineError::File(FileError::Io { path: path(), error }))?;
+            .map_err(|error| ReadError::File(FileError::Io { path: path(), error }))?;
         self.length += count as u64;
         if self.length > self.limit {
-            return Err(LineError::File(FileError::TooLong { path: path(), length: self.length, limit: self.limit }));
+            return Err(ReadError::File(FileError::TooLong { path: path(), length: self.length, limit: self.limit }));
         }
         self.number += 1;
         while let [.., b'\n' | b'\r'] = self.raw[..] {
@@ -110,4 +126,13 @@ impl<'a> Lines<'a> {
         }
         Ok(count > 0)
     }
+}
+
+/// The words of a part of `text`, as spans of `text`.
+pub(crate) fn words(text: &str, range: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    let base = text.as_ptr() as usize;
+    text[range].split_ascii_whitespace().map(move |word| {
+        let start = word.as_ptr() as usize - base;
+        start..start + word.len()
+    })
 }

@@ -1,0 +1,65 @@
+//! Arguments of `heatmap`.
+
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Arguments of `heatmap`.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub(crate) struct HeatmapArgs {
+    /// An EXR that lightcuts wrote.
+    #[arg(value_name = "PICTURE", value_hint = ValueHint::FilePath)]
+    pub(crate) picture: PathBuf,
+    /// The layer, or `beauty`; `lightcuts info PICTURE` lists them.
+    ///
+    /// Of colours the luminance is shown, of directions and positions the length, of ids the number.
+    #[arg(value_name = "LAYER")]
+    pub(crate) layer: String,
+    /// File to write, .png [default: PICTURE-LAYER.png in the current folder]
+    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+    /// Numbers at both ends of the scale, such as 0..200 [default: 0 to a round number above nearly all values]
+    #[arg(long, value_name = "LOW..HIGH")]
+    pub(crate) range: Option<Range>,
+    /// Show the decimal logarithm; values that are not above 0 have the first colour.
+    #[arg(long)]
+    pub(crate) log: bool,
+    /// Do not say what was written.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// Two numbers in order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Range {
+    pub(crate) low: f32,
+    pub(crate) high: f32,
+}
+
+impl FromStr for Range {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let ends = text.split_once("..").and_then(|(low, high)| Some((low.parse().ok()?, high.parse().ok()?)));
+        let (low, high): (f32, f32) = ends.ok_or("expected two numbers such as 0..200")?;
+        if low.is_finite() && high.is_finite() && low < high {
+            Ok(Self { low, high })
+        } else {
+            Err("expected a smaller number before a greater one".to_owned())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_two_numbers_in_order() {
+        assert_eq!("-1..2.5".parse(), Ok(Range { low: -1.0, high: 2.5 }));
+        for text in ["", "1", "1..", "..2", "2..1", "1..1", "0..inf", "nan..1", "a..b"] {
+            assert!(text.parse::<Range>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! The command `heatmap`: a layer of a picture in false colours, with a scale.
+
+use crate::args::HeatmapArgs;
+use crate::console;
+use crate::exit::{Exit, Failure};
+use crate::job::has_extension;
+use crate::outputs::check_files;
+use lightcuts::image::{self, ColorMap, HeatMap, Image, LayerData, Layers, Plane, Transfer, heat_map, luminance};
+use std::path::PathBuf;
+
+/// Name of the picture itself among its layers.
+const BEAUTY: &str = "beauty";
+
+/// Runs the command.
+pub(crate) fn run(args: &HeatmapArgs) -> Result<Exit, Failure> {
+    let output = args.output.clone().unwrap_or_else(|| default_output(args));
+    if !has_extension(&output, "png") {
+        let message = format!("{} is no picture that can be written", output.display());
+        return Err(Failure::usage(message, "expected a name that ends in .png"));
+    }
+    check_files([output.as_path()].into_iter(), std::slice::from_ref(&args.picture), "heat map", "-o")?;
+    let layers = image::read_exr(&args.picture).map_err(Failure::input)?;
+    let values = values(&layers, &args.layer)?;
+    let shown = if args.log { values.map(|value| value.max(f32::MIN_POSITIVE).log10()) } else { values };
+    let picture = heat_map(&shown, &style(&shown, args));
+    image::write_png(&output, &picture, Transfer::Linear).map_err(Failure::output)?;
+    if !args.quiet {
+        console::print(format!("wrote        {}\n", output.display()).as_bytes())?;
+    }
+    Ok(Exit::Done)
+}
+
+fn default_output(args: &HeatmapArgs) -> PathBuf {
+    let stem = args.picture.file_stem().unwrap_or("picture".as_ref()).to_string_lossy();
+    PathBuf::from(format!("{stem}-{}.png", args.layer))
+}
+
+/// A number for each pixel.
+fn values(layers: &Layers, name: &str) -> Result<Plane<f32>, Failure> {
+    let length = |[x, y, z]: [f32; 3]| (x * x + y * y + z * z).sqrt();
+    let light = |picture: &Image| picture.map(luminance);
+    if name == BEAUTY {
+        return Ok(light(layers.beauty()));
+    }
+    match layers.get(name) {
+        Some(LayerData::Color(picture)) => Ok(light(picture)),
+        Some(LayerData::Vector(picture)) => Ok(picture.map(length)),
+        Some(LayerData::Scalar(plane) | LayerData::Depth(plane)) => Ok(plane.clone()),
+        Some(LayerData::Id(plane)) => Ok(plane.map(|id| id as f32)),
+        None => {
+            let names: Vec<&str> = std::iter::once(BEAUTY).chain(layers.aovs().map(|(name, _)| name)).collect();
+            let message = format!("the picture has no layer `{name}`");
+            Err(Failure::usage(message, format!("expected one of {}", names.join(", "))))
+        }
+    }
+}
+
+fn style(values: &Plane<f32>, args: &HeatmapArgs) -> HeatMap {
+    let label = if args.log { format!("log10 of {}", args.layer) } else { args.layer.clone() };
+    if let Some(range) = args.range {
+        return HeatMap { map: ColorMap::Viridis, low: range.low, high: range.high, label };
+    }
+    if !args.log {
+        return HeatMap::magnitude(values, label);
+    }
+    // Whole powers of ten around the values that are above 0.
+    let least = f32::MIN_POSITIVE.log10();
+    let finite = values.pixels().iter().copied().filter(|v| v.is_finite() && *v > least);
+    let (low, high) = finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    HeatMap { map: ColorMap::Viridis, low: low.floor(), high: high.ceil(), label }
+}

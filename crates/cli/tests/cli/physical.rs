@@ -1,0 +1,126 @@
+//! Scenes of the physical model, and layers in false colours.
+
+use crate::support::{Folder, stderr, stdout};
+use lightcuts::image::{read_exr, read_png};
+
+/// A ball on a floor under a lamp.
+const SCENE: &str = "\
+format = 'lightcuts-scene'
+version = 1
+[camera]
+position = [0, 1, 4]
+target = [0, 0.5, 0]
+[[material]]
+name = 'white'
+type = 'lambert'
+albedo = 0.7
+[[material]]
+name = 'plastic'
+type = 'plastic'
+albedo = [0.6, 0.1, 0.1]
+roughness = 0.4
+[[object]]
+type = 'rectangle'
+material = 'white'
+center = [0, 0, 0]
+normal = [0, 1, 0]
+head = [0, 0, -1]
+width = 4
+height = 4
+[[object]]
+type = 'sphere'
+material = 'plastic'
+center = [0, 0.5, 0]
+radius = 0.5
+[[light]]
+type = 'sphere'
+center = [1, 2, 1]
+radius = 0.2
+radiance = 20
+";
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("ball.toml", SCENE);
+    folder
+}
+
+#[test]
+fn both_integrators_render_a_scene_in_toml() {
+    let folder = folder();
+    for (integrator, words) in [("path", "samples 3"), ("lightcuts", "in a cut")] {
+        let options = format!("--integrator {integrator} --size 20x16 --samples 3 --progress none");
+        let said = stdout(&folder.run(&format!("render ball.toml {options} -o a.exr -o a.png")).success());
+        assert!(said.contains(words), "{said}");
+        let layers = read_exr(folder.at("a.exr")).unwrap();
+        let names: Vec<&str> = layers.aovs().map(|(name, _)| name).collect();
+        for name in ["direct", "indirect", "variance", "cut_size", "error_bound", "material_id", "position"] {
+            assert!(names.contains(&name), "{names:?}");
+        }
+        assert!(layers.beauty().pixels().iter().any(|p| p[0] > 0.1), "something is seen");
+        // The picture holds its job.
+        folder.run("render a.exr -o again.exr --progress none").success();
+        assert!(read_exr(folder.at("again.exr")).unwrap().beauty() == layers.beauty());
+    }
+}
+
+#[test]
+fn a_time_limit_ends_a_render_that_is_complete_then() {
+    let folder = folder();
+    let options = "--time-limit 0.3s --samples 1000000 --size 16x16 --progress none --stats s.json";
+    folder.run(&format!("render ball.toml {options}")).success();
+    assert!(folder.text("s.json").contains("\"complete\": true"));
+    let said = stderr(&folder.run("render ball.toml --time-limit soon").code(2));
+    assert!(said.contains("expected a time such as 10s"), "{said}");
+    folder.run("render ball.toml --noise 10 --samples 100000 --size 16x16 --progress none").success();
+}
+
+#[test]
+fn scenes_of_the_thesis_can_be_rendered_with_it_and_not_the_other_way_round() {
+    let folder = folder();
+    folder.run("render scene.txt --model physical --size 16x16 --samples 2 --progress none").success();
+    let said = stderr(&folder.run("render ball.toml --model thesis").code(2));
+    assert!(said.contains("leave out --model"), "{said}");
+    for arguments in [
+        "--device gpu",
+        "--station-device gather=gpu",
+        "--write-vpls v.csv",
+        "--reproduce",
+        "--gather lightcuts-exhaustive",
+    ] {
+        assert_eq!(
+            folder.run(&format!("render ball.toml {arguments}")).get_output().status.code(),
+            Some(2),
+            "{arguments}"
+        );
+    }
+    assert_eq!(folder.run("render scene.txt --gather stochastic").get_output().status.code(), Some(2));
+    let said = stdout(&folder.run("info ball.toml").success());
+    assert!(said.contains("physical") && said.contains("1 luminous surface") && said.contains("2 lambert"), "{said}");
+    folder.run("info ball.toml --json").success();
+}
+
+#[test]
+fn faults_of_a_scene_are_told_with_their_place() {
+    let folder = Folder::new();
+    folder.write("bad.toml", SCENE.replace("albedo = 0.7", "albedo = 1.5"));
+    let said = stderr(&folder.run("render bad.toml").code(3));
+    assert!(said.contains("bad.toml:") && said.contains("albedo"), "{said}");
+}
+
+#[test]
+fn layers_are_shown_in_false_colours() {
+    let folder = folder();
+    folder.run("render ball.toml --size 20x16 --samples 2 -o a.exr --progress none").success();
+    let said = stdout(&folder.run("heatmap a.exr cut_size").success());
+    assert!(said.contains("a-cut_size.png"), "{said}");
+    folder.run("heatmap a.exr depth --range 0..5 -o d.png -q").success();
+    folder.run("heatmap a.exr beauty --log -o b.png").success();
+    folder.run("heatmap a.exr object_id -o o.png").success();
+    let map = read_png(folder.at("d.png"), lightcuts::image::Transfer::Linear).unwrap();
+    assert!(map.width() >= 20 && map.height() > 16, "the scale lies below");
+    let said = stderr(&folder.run("heatmap a.exr nothing").code(2));
+    assert!(said.contains("expected one of beauty, albedo"), "{said}");
+    folder.run("heatmap a.exr depth -o d.exr").code(2);
+    folder.run("heatmap missing.exr depth").code(3);
+}

@@ -1,0 +1,215 @@
+//! Images that a scene names, each file read once.
+
+use super::build::Builder;
+use super::document::Table;
+use super::value::{FILE, Value};
+use crate::Fault;
+use crate::files::{AssetError, Files};
+use crate::texture::{self, Bounds, Decoded, Texels};
+use lightcuts_scene::physical::{ImageId, PixelImage, Pixels};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// What an image can be, to follow the word "expected".
+const FILES: &str = "a PNG, JPEG, EXR, HDR or PFM file beside the scene or in a search path";
+
+/// What the numbers of an image mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ImageUse {
+    /// Colours; code values are in sRGB.
+    Color,
+    /// Normals, masks and weights, as they are.
+    Data,
+}
+
+/// The images of a scene.
+#[derive(Debug, Default)]
+pub(super) struct Images {
+    /// By the identity of their files; why not, for those that cannot be read.
+    known: HashMap<PathBuf, Result<Uses, String>>,
+    /// What all of them take in memory.
+    bytes: u64,
+}
+
+/// The images made of one file: for colours, and for data. They are one where the file holds light.
+#[derive(Debug, Clone, Copy, Default)]
+struct Uses {
+    color: Option<ImageId>,
+    data: Option<ImageId>,
+    has_alpha: bool,
+}
+
+impl Uses {
+    fn of(&mut self, wanted: ImageUse) -> &mut Option<ImageId> {
+        match wanted {
+            ImageUse::Color => &mut self.color,
+            ImageUse::Data => &mut self.data,
+        }
+    }
+}
+
+impl Images {
+    /// The image in file `name`, read at its first use.
+    fn load(
+        &mut self,
+        files: &mut Files<'_>,
+        list: &mut Vec<PixelImage>,
+        (name, beside): (&str, Option<&Path>),
+        wanted: ImageUse,
+    ) -> Result<ImageId, String> {
+        let path = files.find("image", name, beside).map_err(|error| error.to_string())?;
+        let identity = files.identity(&path);
+        let mut uses = if let Some(known) = self.known.get(&identity) {
+            known.clone()?
+        } else {
+            let decoded = self.decode(files, name, &path).and_then(|decoded| checked(name, decoded));
+            let uses = decoded.map(|decoded| self.push_file(list, name, decoded, wanted));
+            self.known.insert(identity.clone(), uses.clone());
+            uses?
+        };
+        if let Some(id) = uses.of(wanted) {
+            return Ok(*id);
+        }
+        let id = self.push_other_use(files, list, name, &uses, wanted)?;
+        *uses.of(wanted) = Some(id);
+        self.known.insert(identity, Ok(uses));
+        Ok(id)
+    }
+
+    fn decode(&self, files: &mut Files<'_>, name: &str, path: &Path) -> Result<Decoded, String> {
+        let limits = files.limits;
+        let bytes = files.read("image", path, limits.texture_bytes).map_err(|error| error.to_string())?;
+        let bounds = Bounds { side: limits.texture_side, bytes: limits.image_bytes.saturating_sub(self.bytes) };
+        texture::decode(&bytes, bounds).map_err(|error| {
+            AssetError::Content { what: "image", name: name.to_owned(), reason: error.to_string() }.to_string()
+        })
+    }
+
+    fn push_file(&mut self, list: &mut Vec<PixelImage>, name: &str, decoded: Decoded, wanted: ImageUse) -> Uses {
+        let Decoded { width, height, texels } = decoded;
+        let mut uses = Uses::default();
+        let pixels = match texels {
+            Texels::Bytes(texels) => {
+                uses.has_alpha = texels.iter().any(|texel| texel[3] != u8::MAX);
+                pixels(texels, uses.has_alpha, wanted)
+            }
+            Texels::Light(texels) => {
+                uses.color = Some(ImageId(list.len() as u32));
+                uses.data = uses.color;
+                Pixels::Float(texels)
+            }
+        };
+        *uses.of(wanted) = Some(self.push(list, PixelImage { name: name.to_owned(), width, height, pixels }));
+        uses
+    }
+
+    /// An image that is there for another use once more for this one.
+    fn push_other_use(
+        &mut self,
+        files: &Files<'_>,
+        list: &mut Vec<PixelImage>,
+        name: &str,
+        uses: &Uses,
+        wanted: ImageUse,
+    ) -> Result<ImageId, String> {
+        let there = uses.color.or(uses.data).and_then(|id| list.get(id.0 as usize)).cloned();
+        let Some(PixelImage { width, height, pixels: Pixels::Srgb(texels) | Pixels::Linear(texels), .. }) = there
+        else {
+            return Err(format!("the image `{name}` cannot be used for this too"));
+        };
+        let pixels = pixels(texels, uses.has_alpha, wanted);
+        if self.bytes.saturating_add(size(&pixels)) > files.limits.image_bytes {
+            return Err(format!("the images take more than {} bytes of memory", files.limits.image_bytes));
+        }
+        Ok(self.push(list, PixelImage { name: name.to_owned(), width, height, pixels }))
+    }
+
+    fn push(&mut self, list: &mut Vec<PixelImage>, image: PixelImage) -> ImageId {
+        self.bytes = self.bytes.saturating_add(size(&image.pixels));
+        list.push(image);
+        ImageId(list.len() as u32 - 1)
+    }
+}
+
+/// Bytes in memory.
+fn size(pixels: &Pixels) -> u64 {
+    match pixels {
+        Pixels::Srgb(texels) | Pixels::Linear(texels) => size_of_val(texels.as_slice()) as u64,
+        Pixels::Float(texels) => size_of_val(texels.as_slice()) as u64,
+    }
+}
+
+/// A mask's values are in alpha; where that is opaque everywhere, or the file has none, they are those of red.
+fn pixels(mut texels: Vec<[u8; 4]>, has_alpha: bool, wanted: ImageUse) -> Pixels {
+    if !has_alpha {
+        for texel in &mut texels {
+            texel[3] = if wanted == ImageUse::Data { texel[0] } else { u8::MAX };
+        }
+    }
+    match wanted {
+        ImageUse::Color => Pixels::Srgb(texels),
+        ImageUse::Data => Pixels::Linear(texels),
+    }
+}
+
+/// Light with nothing in it that cannot be: what is a little below zero, as filters leave it, is 0.
+fn checked(name: &str, mut decoded: Decoded) -> Result<Decoded, String> {
+    if let Texels::Light(texels) = &mut decoded.texels {
+        let bad = texels.iter().position(|texel| !texel.iter().all(|value| value.is_finite()));
+        if let Some(i) = bad {
+            let (row, column) = (i as u32 / decoded.width + 1, i as u32 % decoded.width + 1);
+            return Err(format!("the image `{name}` holds {:?} in row {row}, column {column}", texels[i]));
+        }
+        texels.iter_mut().flatten().for_each(|value| *value = value.max(0.0));
+    }
+    Ok(decoded)
+}
+
+impl Builder<'_> {
+    /// The image that the value of `key` names, if there is one.
+    #[allow(clippy::option_option, reason = "the outer one is an error, as everywhere here")]
+    pub(super) fn optional_image(
+        &mut self,
+        table: Table<'_>,
+        key: &'static str,
+        wanted: ImageUse,
+    ) -> Option<Option<ImageId>> {
+        table.get(key).map_or(Some(None), |value| self.image(value, wanted).map(Some))
+    }
+
+    /// The image that the value of `key` names; there must be one.
+    pub(super) fn required_image(&mut self, table: Table<'_>, key: &'static str, wanted: ImageUse) -> Option<ImageId> {
+        match table.get(key) {
+            Some(value) => self.image(value, wanted),
+            None => self.reader.required(table, key, FILE).and(None),
+        }
+    }
+
+    /// The image that a value names.
+    pub(super) fn image(&mut self, value: Value<'_>, wanted: ImageUse) -> Option<ImageId> {
+        let name = self.reader.read(value, FILE)?;
+        let source = self.reader.source;
+        match self.image_named(&name, None, wanted, || source.fault(value.span(), "")) {
+            Ok(id) => Some(id),
+            Err(message) => {
+                self.reader.error(value.span(), &message, FILES);
+                None
+            }
+        }
+    }
+
+    /// The image in file `name` beside the file `beside` (`None`: beside the scene); `place` says where it is named.
+    pub(super) fn image_named(
+        &mut self,
+        name: &str,
+        beside: Option<&Path>,
+        wanted: ImageUse,
+        place: impl FnOnce() -> Fault,
+    ) -> Result<ImageId, String> {
+        let id = self.images.load(&mut self.files, &mut self.scene.images, (name, beside), wanted)?;
+        if self.scene.images.len() > self.places.images.len() {
+            self.places.images.push(place());
+        }
+        Ok(id)
+    }
+}

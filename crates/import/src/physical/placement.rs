@@ -1,0 +1,66 @@
+//! How an object is placed: `scale`, then `rotate`, then `translate`; or a `matrix`.
+
+use super::document::Table;
+use super::reader::Reader;
+use super::value::{FACTORS, MATRIX, NUMBER, VECTOR, Value};
+use glam::{Affine3A, Mat3A, Quat, Vec3, Vec4};
+
+pub(super) const KEYS: [&str; 4] = ["translate", "rotate", "scale", "matrix"];
+
+/// The placement of an object; none leaves it where it is.
+pub(super) fn placement(reader: &mut Reader<'_>, table: Table<'_>) -> Option<Affine3A> {
+    if table.has("matrix") {
+        if let Some(other) = KEYS[..3].iter().find(|key| table.has(key)) {
+            let message = format!("`{other}` beside `matrix`");
+            reader.error_at(table, other, &message, "one of them alone: the matrix holds all of the placement");
+            return None;
+        }
+        return matrix(reader, table);
+    }
+    let scale = reader.or(table, "scale", FACTORS, Vec3::ONE)?;
+    let translation = reader.or(table, "translate", VECTOR, Vec3::ZERO)?;
+    let rotation = match table.get("rotate") {
+        Some(value) => rotations(reader, value)?,
+        None => Quat::IDENTITY,
+    };
+    Some(Affine3A::from_scale_rotation_translation(scale, rotation, translation))
+}
+
+fn matrix(reader: &mut Reader<'_>, table: Table<'_>) -> Option<Affine3A> {
+    let rows = reader.required(table, "matrix", MATRIX)?.map(Vec4::from_array);
+    if rows[3] != Vec4::W {
+        let message = format!("the last row of `matrix` is {}", rows[3]);
+        reader.error_at(table, "matrix", &message, "[0, 0, 0, 1]: other matrices distort");
+        return None;
+    }
+    let [x, y, z] = [rows[0], rows[1], rows[2]].map(Vec4::truncate);
+    let translation = Vec3::new(rows[0].w, rows[1].w, rows[2].w);
+    // The rows of a matrix are the columns of its transpose.
+    Some(Affine3A {
+        matrix3: Mat3A::from_cols(x.into(), y.into(), z.into()).transpose(),
+        translation: translation.into(),
+    })
+}
+
+/// One rotation, or several in the order in which they turn the object.
+fn rotations(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Quat> {
+    let Some(items) = value.items() else { return rotation(reader, value) };
+    items.into_iter().try_fold(Quat::IDENTITY, |turned, item| Some(rotation(reader, item)? * turned))
+}
+
+/// `{ axis = [0, 1, 0], degrees = 45 }`, by the right-hand rule.
+fn rotation(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Quat> {
+    let Some(table) = value.table() else {
+        let example = "a rotation such as { axis = [0, 1, 0], degrees = 45 }, or a list of such";
+        reader.error(value.span(), "`rotate` is no table", example);
+        return None;
+    };
+    table.check_keys(reader, "a rotation", &[&["axis", "degrees"]])?;
+    let axis = reader.required(table, "axis", VECTOR)?;
+    let degrees = reader.required(table, "degrees", NUMBER)?;
+    let Some(axis) = axis.try_normalize() else {
+        reader.error_at(table, "axis", &format!("`axis` is {axis}"), "a direction of non-zero length");
+        return None;
+    };
+    Some(Quat::from_axis_angle(axis, degrees.to_radians()))
+}

@@ -1,0 +1,299 @@
+//! Clusters of virtual lights, and how much one may send to a point at most (Walter et al. 2005, "Lightcuts").
+
+use crate::bsdf::{Bsdf, CONDUCTOR, GLOSSY, MATT, PHONG, PLASTIC, energy_at, lobes_of, mean_energy};
+use crate::ggx::ggx_distribution;
+use crate::power::power;
+use crate::sampling::frame;
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// Bit of a child that is a light, not a cluster.
+pub const LIGHT_CHILD: u32 = 1 << 31;
+
+/// Margin of bounds above the rounding errors of their terms.
+pub const BOUND_MARGIN: f32 = 1.0 + 1e-4;
+
+/// A cluster of two children. 64 bytes.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct ClusterNode {
+    /// Lower corner of a box around its lights.
+    pub lower: Vec3,
+    /// First child: a cluster, or with [`LIGHT_CHILD`] a light.
+    pub left: u32,
+    /// Upper corner.
+    pub upper: Vec3,
+    /// Second child.
+    pub right: u32,
+    /// Unit axis of a cone around its lights' normals.
+    pub axis: Vec3,
+    /// Cosine of the cone's half angle.
+    pub cos_cone: f32,
+    /// Sum of its lights' [`light_power`]s.
+    pub power: f32,
+    /// The light that stands for it.
+    pub representative: u32,
+    /// Unused.
+    pub padding: [u32; 2],
+}
+
+/// What errors of clusters are measured by: the sum of the channels of a light's intensity.
+pub fn light_power(intensity: Vec3) -> f32 {
+    intensity.x + intensity.y + intensity.z
+}
+
+/// Who is lit: bounds hold for its material, seen from one direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoundReceiver {
+    /// Position.
+    pub point: Vec3,
+    /// Unit normal for shading, on the side of the viewer.
+    pub normal: Vec3,
+    /// The viewer's direction, mirrored about the normal.
+    pub mirror: Vec3,
+    /// Cosine between the normal and the viewer.
+    pub cos_o: f32,
+    /// Squared distance below which light no longer grows.
+    pub clamp_sq: f32,
+}
+
+/// The least squared distance from the origin to a box.
+pub fn box_distance_sq(center: Vec3, half: Vec3) -> f32 {
+    let outside = (center.abs() - half).max(Vec3::ZERO);
+    outside.length_squared()
+}
+
+/// The greatest cosine, at least 0, between a unit axis at the origin and a point of a box.
+///
+/// In a frame whose third axis is the given one the box lies in an interval for each coordinate; the cosine grows with the third
+/// and falls with the size of the others.
+pub fn box_cosine(axis: Vec3, center: Vec3, half: Vec3) -> f32 {
+    let along = |unit: Vec3| (unit.dot(center), unit.abs().dot(half));
+    let (z, reach) = along(axis);
+    let z_max = z + reach;
+    if z_max <= 0.0 {
+        return 0.0;
+    }
+    let (tangent, bitangent) = frame(axis);
+    let least = |unit: Vec3| {
+        let (c, reach) = along(unit);
+        (c.abs() - reach).max(0.0)
+    };
+    let (x, y) = (least(tangent), least(bitangent));
+    (z_max / (x * x + y * y + z_max * z_max).sqrt()).min(1.0)
+}
+
+/// The greatest cosine to any axis of a cone, where that to its middle is at most `cos`.
+pub fn widened_cosine(cos: f32, cos_cone: f32) -> f32 {
+    if cos >= cos_cone {
+        return 1.0;
+    }
+    let sin = |c: f32| (1.0 - c * c).max(0.0).sqrt();
+    (cos * cos_cone + sin(cos) * sin(cos_cone)).clamp(0.0, 1.0)
+}
+
+/// An upper bound of a BSDF's greatest channel times the cosine, over directions of which the cosines to the normal and to the
+/// mirror direction are at most the given ones. `weights` are factors on its matt and on its glossy lobes.
+pub fn bsdf_bound(bsdf: &Bsdf, tables: &[f32], weights: [f32; 2], cos_o: f32, cos_normal: f32, cos_mirror: f32) -> f32 {
+    let lobes = lobes_of(bsdf);
+    let mut bound = 0.0;
+    if lobes & MATT != 0 && weights[0] > 0.0 {
+        let coat = if bsdf.kind == PLASTIC {
+            (1.0 - energy_at(tables, bsdf.table, false, cos_o))
+                / (1.0 - mean_energy(tables, bsdf.table, false)).max(1e-4)
+        } else {
+            1.0
+        };
+        bound += weights[0] * bsdf.diffuse.max_element() * coat * cos_normal * (1.0 / PI);
+    }
+    if lobes & GLOSSY != 0 && weights[1] > 0.0 {
+        bound += weights[1] * glossy_bound(bsdf, tables, cos_o, cos_normal, cos_mirror);
+    }
+    bound
+}
+
+fn glossy_bound(bsdf: &Bsdf, tables: &[f32], cos_o: f32, cos_normal: f32, cos_mirror: f32) -> f32 {
+    match bsdf.kind {
+        PHONG => {
+            let lobe = (bsdf.exponent + 2.0) / (2.0 * PI) * power(cos_mirror, bsdf.exponent);
+            bsdf.specular.max_element() * lobe * cos_normal
+        }
+        CONDUCTOR | PLASTIC => {
+            // Two half turns, about the normal and about the half vector, turn the mirror direction into the light's by twice
+            // the angle between both at most; the distribution falls with that angle. F and G are at most 1.
+            let cos_half = (0.5 + 0.5 * cos_mirror).sqrt();
+            let facets = ggx_distribution(cos_half, bsdf.alpha) / (4.0 * cos_o.max(1e-6));
+            let lost = if bsdf.kind == CONDUCTOR {
+                let mean = mean_energy(tables, bsdf.table, false);
+                let lost = 1.0 - energy_at(tables, bsdf.table, false, cos_o);
+                lost.max(0.0) / (PI * (1.0 - mean).max(1e-4)) * cos_normal
+            } else {
+                0.0
+            };
+            facets + lost
+        }
+        _ => 0.0,
+    }
+}
+
+/// At most so much light, as a sum of channels, comes from a cluster; see [`bsdf_bound`] for the weights.
+pub fn cluster_bound(
+    node: &ClusterNode,
+    receiver: &BoundReceiver,
+    bsdf: &Bsdf,
+    tables: &[f32],
+    weights: [f32; 2],
+) -> f32 {
+    let half = (node.upper - node.lower) * 0.5;
+    let center = (node.upper + node.lower) * 0.5 - receiver.point;
+    let emitted = widened_cosine(box_cosine(node.axis, -center, half), node.cos_cone);
+    if emitted <= 0.0 {
+        return 0.0;
+    }
+    let cos_normal = box_cosine(receiver.normal, center, half);
+    if cos_normal <= 0.0 {
+        return 0.0;
+    }
+    let cos_mirror = if weights[1] > 0.0 { box_cosine(receiver.mirror, center, half) } else { 0.0 };
+    let material = bsdf_bound(bsdf, tables, weights, receiver.cos_o, cos_normal, cos_mirror);
+    let distance_sq = box_distance_sq(center, half).max(receiver.clamp_sq).max(f32::MIN_POSITIVE);
+    node.power * material * emitted / distance_sq * BOUND_MARGIN
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bsdf::{ALL_LOBES, LAMBERT, Transport, bsdf_value};
+    use crate::energy::energy_tables;
+    use crate::ray::NONE;
+    use crate::rng::random4;
+    use crate::virtual_light::{VirtualLight, pack_direction, virtual_emission};
+
+    fn random3(k: u32, purpose: u32) -> Vec3 {
+        let [a, b, c, _] = random4(k, purpose, 0, 13);
+        Vec3::new(a, b, c)
+    }
+
+    fn unit(k: u32, purpose: u32) -> Vec3 {
+        (random3(k, purpose) - 0.5).normalize()
+    }
+
+    #[test]
+    fn no_point_of_a_box_exceeds_its_cosine_or_distance() {
+        for k in 0..20_000 {
+            let (axis, center) = (unit(k, 0), (random3(k, 1) - 0.5) * 4.0);
+            let half = random3(k, 2) * random3(k, 3);
+            let bound = box_cosine(axis, center, half);
+            let nearest = box_distance_sq(center, half);
+            for m in 0..40 {
+                // Corners, and points within.
+                let place = if m < 8 {
+                    Vec3::new((m & 1) as f32, (m >> 1 & 1) as f32, (m >> 2) as f32) * 2.0 - 1.0
+                } else {
+                    random3(k * 64 + m, 4) * 2.0 - 1.0
+                };
+                let point = center + half * place;
+                let cos = axis.dot(point) / point.length().max(1e-20);
+                assert!(cos <= bound + 1e-5, "{cos} {bound}");
+                assert!(point.length_squared() >= nearest * 0.999_99);
+            }
+        }
+    }
+
+    #[test]
+    fn no_axis_of_a_cone_exceeds_the_widened_cosine() {
+        for k in 0..20_000 {
+            let (axis, direction) = (unit(k, 0), unit(k, 1));
+            let cos_cone = random4(k, 2, 0, 13)[0];
+            let bound = widened_cosine(axis.dot(direction).max(0.0), cos_cone);
+            let (tangent, bitangent) = frame(axis);
+            for m in 0..16 {
+                let [a, b, ..] = random4(k * 16 + m, 3, 0, 13);
+                let cos = 1.0 - a * (1.0 - cos_cone);
+                let (s, c) = (b * 2.0 * PI).sin_cos();
+                let tilted = axis * cos + (tangent * c + bitangent * s) * (1.0 - cos * cos).max(0.0).sqrt();
+                assert!(tilted.dot(direction) <= bound + 1e-5);
+            }
+        }
+    }
+
+    /// Materials of every kind that is gathered.
+    fn materials() -> Vec<(&'static str, Bsdf, Vec<f32>)> {
+        let base = Bsdf {
+            diffuse: Vec3::new(0.7, 0.2, 0.4),
+            specular: Vec3::new(0.1, 0.3, 0.2),
+            ior: 1.5,
+            exponent: 30.0,
+            ..Bsdf::zeroed()
+        };
+        let of = |name, bsdf: Bsdf| (name, bsdf, energy_tables(bsdf.kind, bsdf.alpha, bsdf.ior).to_vec());
+        let metal = Bsdf { kind: CONDUCTOR, specular: Vec3::splat(0.3), absorption: Vec3::splat(3.0), ..base };
+        vec![
+            of("lambert", Bsdf { kind: LAMBERT, ..base }),
+            of("phong", Bsdf { kind: PHONG, ..base }),
+            of("sharp phong", Bsdf { kind: PHONG, exponent: 500.0, ..base }),
+            of("metal", Bsdf { alpha: 0.15, ..metal }),
+            of("rough metal", Bsdf { alpha: 0.7, ..metal }),
+            of("plastic", Bsdf { kind: PLASTIC, ..base }),
+            of("rough plastic", Bsdf { kind: PLASTIC, alpha: 0.3, ..base }),
+        ]
+    }
+
+    /// 10,000 random clusters for every material: no light of a cluster sends more than its share of the bound.
+    #[test]
+    fn no_light_of_a_cluster_exceeds_the_bound() {
+        for (name, bsdf, tables) in materials() {
+            let (mut tightest, mut lit) = (0.0_f32, 0);
+            for k in 0..10_000 {
+                let lower = (random3(k, 0) - 0.5) * 3.0;
+                let upper = lower + random3(k, 1) * random3(k, 2) * 2.0;
+                let cos_cone = random4(k, 3, 0, 13)[0] * 2.0 - 1.0;
+                let node =
+                    ClusterNode { lower, upper, axis: unit(k, 4), cos_cone, power: 3.0, ..ClusterNode::zeroed() };
+                let normal = unit(k, 5);
+                let viewer = unit(k, 6);
+                let viewer = if viewer.dot(normal) < 0.0 { -viewer } else { viewer };
+                let cos_o = viewer.dot(normal);
+                let receiver = BoundReceiver {
+                    point: (random3(k, 7) - 0.5) * 3.0,
+                    normal,
+                    mirror: normal * (2.0 * cos_o) - viewer,
+                    cos_o,
+                    clamp_sq: 0.01,
+                };
+                let bound = cluster_bound(&node, &receiver, &bsdf, &tables, [1.0; 2]);
+                let tangents = frame(normal);
+                let local = |v: Vec3| Vec3::new(tangents.0.dot(v), tangents.1.dot(v), normal.dot(v));
+                for m in 0..8 {
+                    let position = lower + (upper - lower) * random3(k * 8 + m, 8);
+                    let [a, b, ..] = random4(k * 8 + m, 9, 0, 13);
+                    let cos = 1.0 - a * (1.0 - cos_cone);
+                    let (s, c) = (b * 2.0 * PI).sin_cos();
+                    let around = frame(node.axis);
+                    let emitter = node.axis * cos + (around.0 * c + around.1 * s) * (1.0 - cos * cos).max(0.0).sqrt();
+                    let light = VirtualLight {
+                        position,
+                        table: NONE,
+                        normal: emitter,
+                        shading: pack_direction(emitter),
+                        intensity: Vec3::ONE,
+                        padding: 0,
+                    };
+                    let to_light = position - receiver.point;
+                    let direction = to_light.normalize();
+                    let value =
+                        bsdf_value(&bsdf, &tables, ALL_LOBES, local(viewer), local(direction), Transport::Radiance)
+                            * local(direction).z.max(0.0);
+                    let sent = light_power(value * light.intensity) * virtual_emission(&light, &tables, -direction)
+                        / to_light.length_squared().max(receiver.clamp_sq);
+                    assert!(sent <= bound, "{name}, cluster {k}: {sent} > {bound}");
+                    lit += u32::from(sent > 0.0);
+                    tightest = tightest.max(sent / bound.max(1e-30));
+                }
+            }
+            println!("{name}: {lit} of 80000 lights shine; the closest reaches {tightest:.3} of its bound");
+            assert!(lit > 5_000);
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Light straight from the scene's lights: one of them is drawn, and weighed against meeting it by chance.
+
+use super::pass::Counts;
+use super::scene::{Interaction, Scene};
+use glam::Vec3;
+use lightcuts_kernel::bsdf::{GLOSSY, MATT, lobes_of};
+use lightcuts_kernel::emitter::{Emitter, RECTANGLE_LIGHT, SPHERE_LIGHT, TRIANGLE_LIGHT, emitter_pdf, sample_emitter};
+use lightcuts_kernel::emitter_tree::{Lit, leaf_probability, sample_emitter_tree};
+use lightcuts_kernel::environment::{environment_pdf, environment_radiance, sample_environment};
+use lightcuts_kernel::ray::{NONE, Ray};
+use lightcuts_kernel::scatter::{TexturePlace, image_at, is_there};
+use lightcuts_kernel::texture::sphere_coordinates;
+
+/// Light that arrives from one direction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Arriving {
+    /// Unit vector towards it.
+    pub(crate) direction: Vec3,
+    /// Radiance over the density of the direction; of lights without extent what arrives across the direction, over the
+    /// probability of the light.
+    pub(crate) light: Vec3,
+    /// Density per steradian with which lights are drawn in this direction; 0 of lights without extent.
+    pub(crate) pdf: f32,
+    /// What must be free for it to arrive.
+    pub(crate) shadow: Ray,
+}
+
+/// The balance heuristic with squares (Veach 1997): the weight of a sample that was drawn with density `own`.
+fn power_heuristic(own: f32, other: f32) -> f32 {
+    let ratio = other / own;
+    1.0 / (1.0 + ratio * ratio)
+}
+
+/// Where a path came from.
+pub(crate) struct Before {
+    pub(crate) at: Interaction,
+    /// Density of the direction that it took; 0 of a single direction.
+    pub(crate) pdf: f32,
+}
+
+impl Before {
+    /// Weight of light that was met by chance, by the density with which it is drawn from where the path was before. Light that
+    /// the camera sees, or that comes from a single direction, cannot be drawn.
+    pub(crate) fn weight(before: Option<&Self>, light_pdf: impl Fn(&Interaction) -> f32) -> f32 {
+        match before {
+            Some(before) if before.pdf > 0.0 => power_heuristic(before.pdf, light_pdf(&before.at)),
+            _ => 1.0,
+        }
+    }
+}
+
+/// Light of one drawn light at a place; `value` is the BSDF times the cosine for a direction, and `lobes` those from which the
+/// path goes on.
+pub(crate) fn direct_light(
+    scene: &Scene<'_>,
+    at: &Interaction,
+    lobes: u32,
+    random: [f32; 3],
+    counts: &mut Counts,
+    value: impl Fn(Vec3) -> Vec3,
+) -> Vec3 {
+    if lobes & lobes_of(&at.bsdf) & (MATT | GLOSSY) == 0 {
+        return Vec3::ZERO;
+    }
+    let Some(arriving) = scene.sample_light(at, random) else { return Vec3::ZERO };
+    let value = value(arriving.direction);
+    if value == Vec3::ZERO {
+        return Vec3::ZERO;
+    }
+    counts.shadow += 1;
+    if !scene.is_free(&arriving.shadow) {
+        return Vec3::ZERO;
+    }
+    let weight = if arriving.pdf == 0.0 {
+        1.0
+    } else {
+        power_heuristic(arriving.pdf, at.pdf(&scene.world.tables, lobes, arriving.direction))
+    };
+    value * arriving.light * weight
+}
+
+impl Scene<'_> {
+    /// Lights that are infinitely far away.
+    fn far_lights(&self) -> u32 {
+        self.world.emitters.len() as u32 - self.world.placed_emitters + u32::from(self.environment.is_some())
+    }
+
+    /// Probability that one of those is drawn: all of them and the placed ones together have equal chances.
+    fn far_probability(&self) -> f32 {
+        let far = self.far_lights() as f32;
+        if far == 0.0 { 0.0 } else { far / (far + f32::from(u8::from(self.world.placed_emitters > 0))) }
+    }
+
+    /// Draws light that may arrive; `None` if none can.
+    pub(crate) fn sample_light(&self, at: &Interaction, random: [f32; 3]) -> Option<Arriving> {
+        let [u, v, choice] = random;
+        let far = self.far_probability();
+        if choice < far {
+            let each = far / self.far_lights() as f32;
+            let number = ((choice / each) as u32).min(self.far_lights() - 1) + self.world.placed_emitters;
+            return match self.world.emitters.get(number as usize) {
+                Some(emitter) => self.light_of(at, emitter, each, [u, v]),
+                None => self.light_of_environment(at, each, [u, v]),
+            };
+        }
+        let rest = ((choice - far) / (1.0 - far)).min(1.0 - f32::EPSILON);
+        let (number, probability) = sample_emitter_tree(&self.world.emitter_nodes, &lit(at), rest)?;
+        self.light_of(at, &self.world.emitters[number as usize], probability * (1.0 - far), [u, v])
+    }
+
+    fn light_of(&self, at: &Interaction, emitter: &Emitter, chance: f32, random: [f32; 2]) -> Option<Arriving> {
+        let sample = sample_emitter(emitter, at.point, random);
+        let has_extent = matches!(emitter.kind, TRIANGLE_LIGHT | RECTANGLE_LIGHT | SPHERE_LIGHT);
+        if sample.color == Vec3::ZERO || (has_extent && sample.pdf <= 0.0) {
+            return None;
+        }
+        let (color, shadow) = if sample.distance.is_infinite() {
+            (sample.color, at.ray(sample.direction, f32::INFINITY))
+        } else {
+            let target = at.point + sample.direction * sample.distance;
+            let image = self.emitter_texture(emitter, target, sample.place)?;
+            (sample.color * image, at.ray_to(target, target.abs().max_element() * EMITTER_EPSILON))
+        };
+        let pdf = sample.pdf * chance;
+        let light = color / if has_extent { pdf } else { chance };
+        Some(Arriving { direction: sample.direction, light, pdf, shadow })
+    }
+
+    /// Factor of a light's texture at a place on it; `None` where it has a hole.
+    pub(crate) fn emitter_texture(&self, emitter: &Emitter, target: Vec3, place: [f32; 2]) -> Option<Vec3> {
+        if emitter.primitive == NONE {
+            return Some(Vec3::ONE);
+        }
+        let shapes = &self.world.shapes;
+        let primitive = &shapes.primitives[emitter.primitive as usize];
+        let scatter = &self.world.scatters[primitive.material as usize];
+        if emitter.image == NONE && scatter.mask_image == NONE {
+            return Some(Vec3::ONE);
+        }
+        let uv = match emitter.kind {
+            TRIANGLE_LIGHT => {
+                let [a, b, c] = shapes.corners[primitive.index as usize].texture_coordinates;
+                let at = |k: usize| a[k] * (1.0 - place[0] - place[1]) + b[k] * place[0] + c[k] * place[1];
+                [at(0), at(1)]
+            }
+            SPHERE_LIGHT => sphere_coordinates(((target - emitter.position) / emitter.radius).normalize_or_zero()),
+            // A square's width runs to the left along its first edge.
+            _ => [1.0 - place[0], place[1]],
+        };
+        let place = TexturePlace { uv, width: 0.0 };
+        is_there(scatter, self.images(), &place).then(|| image_at(self.images(), emitter.image, &place).truncate())
+    }
+
+    fn light_of_environment(&self, at: &Interaction, chance: f32, random: [f32; 2]) -> Option<Arriving> {
+        let map = self.environment.as_ref()?;
+        let (direction, density) = sample_environment(map, random);
+        let pdf = density * chance;
+        let light = environment_radiance(map, direction) / pdf;
+        let shadow = at.ray(direction, f32::INFINITY);
+        (pdf > 0.0 && light != Vec3::ZERO).then_some(Arriving { direction, light, pdf, shadow })
+    }
+
+    /// Radiance of the environment in a direction, and the density with which [`Scene::sample_light`] draws it.
+    pub(crate) fn environment_light(&self, direction: Vec3) -> (Vec3, f32) {
+        self.environment.as_ref().map_or((Vec3::ZERO, 0.0), |map| {
+            let chance = self.far_probability() / self.far_lights() as f32;
+            (environment_radiance(map, direction), environment_pdf(map, direction) * chance)
+        })
+    }
+
+    /// The density with which [`Scene::sample_light`], from one place, draws the direction in which another one shines.
+    pub(crate) fn light_pdf(&self, from: &Interaction, light: &Interaction, direction: Vec3, distance: f32) -> f32 {
+        if light.emitter == NONE {
+            return 0.0;
+        }
+        let emitter = &self.world.emitters[light.emitter as usize];
+        let leaf = self.world.emitter_leaves[light.emitter as usize];
+        let chance = leaf_probability(&self.world.emitter_nodes, leaf, &lit(from)) * (1.0 - self.far_probability());
+        emitter_pdf(emitter, from.point, direction, distance) * chance
+    }
+}
+
+/// Relative distance that keeps shadow rays from the light itself.
+const EMITTER_EPSILON: f32 = 2e-5;
+
+fn lit(at: &Interaction) -> Lit {
+    let normal = if at.wo.z < 0.0 { -at.normal } else { at.normal };
+    Lit { point: at.point, normal, both_sides: at.is_transparent() }
+}

@@ -1,0 +1,36 @@
+//! The physical model: path tracing, and indirect light from virtual point lights through error-bounded cuts.
+
+mod cluster_tree;
+mod direct;
+mod emission;
+mod gather;
+mod integrator;
+mod job;
+mod lightcuts;
+mod pass;
+mod path;
+mod randoms;
+mod rendering;
+mod scene;
+#[cfg(test)]
+mod tests;
+mod vpls;
+
+pub use rendering::PhysicalRendering;
+
+use crate::cpu::Simd;
+use crate::monitor::Monitor;
+use crate::settings::{Settings, SettingsError};
+use lightcuts_world::PhysicalWorld;
+
+/// Renders a physical world on the threads of the current rayon pool; `settings.physical` says how. Fails only if a parameter is
+/// out of range. A monitor that cancels gets what there is, with `stats.complete` false.
+pub fn render_physical(
+    world: &PhysicalWorld,
+    settings: &Settings,
+    simd: Simd,
+    monitor: &dyn Monitor,
+) -> Result<PhysicalRendering, SettingsError> {
+    settings.validate()?;
+    Ok(job::PhysicalJob::new(world, settings, simd, monitor).run())
+}

@@ -1,0 +1,92 @@
+//! Path tracing: the reference (Kajiya 1986), with light drawn at every vertex and weighed by multiple importance sampling
+//! (Veach 1997).
+
+use super::direct::{Before, direct_light};
+use super::pass::{Counts, FirstHit};
+use super::randoms::Randoms;
+use super::scene::{Cone, Interaction, Scene};
+use glam::Vec3;
+use lightcuts_kernel::bsdf::{ALL_LOBES, SPECULAR, Transport};
+use lightcuts_kernel::ray::Ray;
+
+/// Vertices after which paths end by chance.
+const SURE_VERTICES: u32 = 4;
+
+/// Vertices after which they end at all: no path of weight gets there.
+pub(crate) const MAX_VERTICES: u32 = 4096;
+
+/// The radiance against a ray, what it first met, and how much light is indirect.
+pub(crate) fn trace_path(
+    scene: &Scene<'_>,
+    ray: Ray,
+    cone: Cone,
+    randoms: &mut Randoms,
+    counts: &mut Counts,
+) -> (Radiance, Option<FirstHit>) {
+    let tables = &scene.world.tables[..];
+    let (mut ray, mut cone) = (ray, cone);
+    let mut throughput = Vec3::ONE;
+    let mut sum = Radiance::default();
+    let mut first = None;
+    let mut before: Option<Before> = None;
+    for vertex in 0..MAX_VERTICES {
+        let Some(hit) = scene.closest(&ray) else {
+            let (light, pdf) = scene.environment_light(ray.direction);
+            sum.add(vertex, throughput * light * Before::weight(before.as_ref(), |_| pdf));
+            break;
+        };
+        let [r0, r1, r2, r3] = randoms.next();
+        let at = scene.interaction(&ray, &hit, cone, r3);
+        first.get_or_insert_with(|| FirstHit::new(&at, &ray, hit.t));
+        if at.emitted != Vec3::ZERO {
+            let pdf = |from: &Interaction| scene.light_pdf(from, &at, ray.direction, hit.t);
+            sum.add(vertex, throughput * at.emitted * Before::weight(before.as_ref(), pdf));
+        }
+        let [u, v, choice, survival] = randoms.next();
+        let value = |direction| at.scattered(tables, ALL_LOBES, direction, Transport::Radiance);
+        let direct = direct_light(scene, &at, ALL_LOBES, [u, v, choice], counts, value);
+        sum.add(vertex + 1, throughput * direct);
+        let Some(sample) = at.sample(tables, ALL_LOBES, [r0, r1, r2], Transport::Radiance) else { break };
+        throughput *= sample.weight;
+        if vertex + 1 >= SURE_VERTICES {
+            let survives = throughput.max_element().min(0.95);
+            if survival >= survives {
+                break;
+            }
+            throughput /= survives;
+        }
+        if throughput == Vec3::ZERO {
+            break;
+        }
+        // Behind a matt vertex textures are looked up at points, as light paths do.
+        cone = if sample.lobe == SPECULAR { cone.after(hit.t) } else { Cone::NONE };
+        before = Some(Before { at, pdf: sample.pdf });
+        ray = at.ray(sample.wi, f32::INFINITY);
+        counts.bounces += 1;
+    }
+    (sum, first)
+}
+
+/// Radiance, and parts of it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Radiance {
+    pub(crate) all: Vec3,
+    /// The part that was scattered at least twice.
+    pub(crate) indirect: Vec3,
+    /// The part that was not scattered at all.
+    pub(crate) emitted: Vec3,
+}
+
+impl Radiance {
+    /// Adds light that met so many surfaces on its way.
+    pub(crate) fn add(&mut self, surfaces: u32, light: Vec3) {
+        if light.is_finite() {
+            self.all += light;
+            match surfaces {
+                0 => self.emitted += light,
+                1 => {}
+                _ => self.indirect += light,
+            }
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! Rays against a physical world, and what they find.
+
+use crate::cpu::{Simd, Tracer};
+use glam::Vec3;
+use lightcuts_kernel::Rules;
+use lightcuts_kernel::bsdf::{Bsdf, BsdfSample, DIELECTRIC, Transport, bsdf_pdf, bsdf_value, sample_bsdf};
+use lightcuts_kernel::environment::EnvironmentMap;
+use lightcuts_kernel::intersect::{SPHERE, TRIANGLE};
+use lightcuts_kernel::ray::{Hit, NONE, Ray, spawn_epsilon};
+use lightcuts_kernel::sampling::frame;
+use lightcuts_kernel::scatter::{
+    Images, TexturePlace, chosen_scatter, is_there, scatter_bsdf, scatter_normal, scatter_radiance,
+};
+use lightcuts_kernel::surface::{Surface, surface_at};
+use lightcuts_kernel::texture::surface_point;
+use lightcuts_world::PhysicalWorld;
+
+/// Surfaces with holes that a ray may pass through, one behind the other.
+const MAX_HOLES: u32 = 1024;
+
+/// A world with the means to trace rays through it.
+#[derive(Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    pub(crate) world: &'a PhysicalWorld,
+    pub(crate) environment: Option<EnvironmentMap<'a>>,
+    tracer: Tracer<'a>,
+    images: Images<'a>,
+}
+
+/// A footprint that grows along a ray.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cone {
+    /// Width where the ray begins, in scene units.
+    pub(crate) width: f32,
+    /// Growth per unit.
+    pub(crate) spread: f32,
+}
+
+impl Cone {
+    /// A ray without width: textures are looked up at points.
+    pub(crate) const NONE: Self = Self { width: 0.0, spread: 0.0 };
+
+    /// The cone after some distance.
+    pub(crate) fn after(self, distance: f32) -> Self {
+        Self { width: self.width + self.spread * distance, ..self }
+    }
+}
+
+/// A place that a ray came to.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Interaction {
+    pub(crate) point: Vec3,
+    /// Unit normal of the surface itself.
+    pub(crate) face: Vec3,
+    /// Unit normal for shading, on the same side, with its tangents.
+    pub(crate) normal: Vec3,
+    tangents: (Vec3, Vec3),
+    /// Where the ray came from, in the frame of the shading normal.
+    pub(crate) wo: Vec3,
+    pub(crate) bsdf: Bsdf,
+    /// Radiance that is sent out against the ray.
+    pub(crate) emitted: Vec3,
+    /// Light that the surface is, or [`NONE`].
+    pub(crate) emitter: u32,
+    pub(crate) object: u32,
+    pub(crate) material: u32,
+    /// Distance that keeps other rays from their own surface, in scene units.
+    pub(crate) epsilon: f32,
+}
+
+impl<'a> Scene<'a> {
+    pub(crate) fn new(world: &'a PhysicalWorld, simd: Simd) -> Self {
+        Self {
+            world,
+            environment: world.environment_map(),
+            tracer: Tracer::new(world.shapes.geometry(), Rules::Repaired, simd),
+            images: world.all_images(),
+        }
+    }
+
+    /// The nearest hit; holes let rays through.
+    pub(crate) fn closest(&self, ray: &Ray) -> Option<Hit> {
+        let mut ray = *ray;
+        for _ in 0..MAX_HOLES {
+            let hit = self.tracer.closest(&ray);
+            if !hit.is_some() {
+                return None;
+            }
+            if !self.world.has_masks || self.is_there(&ray, &hit) {
+                return Some(hit);
+            }
+            ray.t_min = hit.t;
+        }
+        None
+    }
+
+    /// Whether nothing lies between the ray's ends.
+    pub(crate) fn is_free(&self, ray: &Ray) -> bool {
+        if self.world.has_masks { self.closest(ray).is_none() } else { !self.tracer.occluded(ray) }
+    }
+
+    fn is_there(&self, ray: &Ray, hit: &Hit) -> bool {
+        let surfaces = self.world.shapes.surfaces();
+        let scatter = &self.world.scatters[surfaces.primitives[hit.primitive as usize].material as usize];
+        if scatter.mask_image == NONE {
+            return true;
+        }
+        let surface = surface_at(&surfaces, ray, hit);
+        let uv = surface_point(&surfaces, hit, &surface).uv;
+        is_there(scatter, &self.images, &TexturePlace { uv, width: 0.0 })
+    }
+
+    /// What is at a hit. `random` decides which of its materials a mix is there.
+    pub(crate) fn interaction(&self, ray: &Ray, hit: &Hit, cone: Cone, random: f32) -> Interaction {
+        let surfaces = self.world.shapes.surfaces();
+        let surface = surface_at(&surfaces, ray, hit);
+        let (face, tangent, density) = self.plane(hit, &surface);
+        let toward = -ray.direction;
+        let uv = surface_point(&surfaces, hit, &surface).uv;
+        // A footprint that is stretched by a grazing view is taken as round: narrow enough not to blur across.
+        let cos = face.dot(toward).abs().max(0.2);
+        let place = TexturePlace { uv, width: cone.after(hit.t).width * density / cos };
+        let index = chosen_scatter(&self.world.scatters, &self.images, surface.material, &place, random);
+        let scatter = &self.world.scatters[index as usize];
+        let own = &self.world.scatters[surface.material as usize];
+        let mut normal = if surface.normal.dot(face) < 0.0 { -surface.normal } else { surface.normal };
+        if normal == Vec3::ZERO {
+            normal = face;
+        }
+        let bent = scatter_normal(scatter, &self.images, &place);
+        if bent != Vec3::Z {
+            let along = (tangent - normal * normal.dot(tangent)).normalize_or_zero();
+            normal = (along * bent.x + normal.cross(along) * bent.y + normal * bent.z).normalize_or(normal);
+        }
+        // A normal that turns a surface away from who sees it says nothing.
+        if normal.dot(toward) * face.dot(toward) <= 0.0 {
+            normal = face;
+        }
+        let tangents = frame(normal);
+        let wo = to_local(tangents, normal, toward);
+        Interaction {
+            point: surface.point,
+            face,
+            normal,
+            tangents,
+            wo,
+            bsdf: scatter_bsdf(scatter, &self.images, &place),
+            emitted: scatter_radiance(own, &self.images, &place, face.dot(toward) > 0.0),
+            emitter: self.world.primitive_emitters[hit.primitive as usize],
+            object: surface.object,
+            material: surface.material,
+            epsilon: spawn_epsilon(Rules::Repaired, surface.point, hit.t),
+        }
+    }
+
+    /// Unit normal of a hit's surface itself, direction of growing u, and texture coordinates per unit.
+    fn plane(&self, hit: &Hit, surface: &Surface) -> (Vec3, Vec3, f32) {
+        let shapes = &self.world.shapes;
+        let primitive = shapes.primitives[hit.primitive as usize];
+        match primitive.kind {
+            TRIANGLE => {
+                let face = &self.world.faces[primitive.index as usize];
+                (face.normal, face.tangent, face.texture_density)
+            }
+            SPHERE => {
+                let around = Vec3::Y.cross(surface.normal).normalize_or_zero();
+                let radius = shapes.spheres[primitive.index as usize].radius;
+                (surface.normal, around, 1.0 / (radius * std::f32::consts::PI * std::f32::consts::SQRT_2))
+            }
+            _ => {
+                let square = &shapes.squares[primitive.index as usize];
+                let density = 0.5 / (square.half_width * square.half_height).sqrt();
+                (square.normal, -square.across, density)
+            }
+        }
+    }
+
+    /// Images of the world.
+    pub(crate) fn images(&self) -> &Images<'a> {
+        &self.images
+    }
+}
+
+fn to_local((tangent, bitangent): (Vec3, Vec3), normal: Vec3, direction: Vec3) -> Vec3 {
+    Vec3::new(tangent.dot(direction), bitangent.dot(direction), normal.dot(direction))
+}
+
+impl Interaction {
+    /// A direction in the frame of the shading normal.
+    pub(crate) fn local(&self, direction: Vec3) -> Vec3 {
+        to_local(self.tangents, self.normal, direction)
+    }
+
+    /// Where the ray came from.
+    pub(crate) fn toward(&self) -> Vec3 {
+        self.in_scene(self.wo)
+    }
+
+    fn in_scene(&self, local: Vec3) -> Vec3 {
+        self.tangents.0 * local.x + self.tangents.1 * local.y + self.normal * local.z
+    }
+
+    /// Whether both normals have a direction on one side: else light would leak through the surface.
+    fn is_sound(&self, direction: Vec3, local: Vec3) -> bool {
+        self.face.dot(direction) * local.z > 0.0
+    }
+
+    /// BSDF times cosine of some lobes.
+    pub(crate) fn scattered(&self, tables: &[f32], lobes: u32, direction: Vec3, transport: Transport) -> Vec3 {
+        let wi = self.local(direction);
+        if !self.is_sound(direction, wi) {
+            return Vec3::ZERO;
+        }
+        bsdf_value(&self.bsdf, tables, lobes, self.wo, wi, transport) * wi.z.abs()
+    }
+
+    /// Density of [`Interaction::sample`] over some lobes.
+    pub(crate) fn pdf(&self, tables: &[f32], lobes: u32, direction: Vec3) -> f32 {
+        bsdf_pdf(&self.bsdf, tables, lobes, self.wo, self.local(direction))
+    }
+
+    /// A direction drawn from some lobes, in the scene's frame.
+    pub(crate) fn sample(
+        &self,
+        tables: &[f32],
+        lobes: u32,
+        random: [f32; 3],
+        transport: Transport,
+    ) -> Option<BsdfSample> {
+        let sample = sample_bsdf(&self.bsdf, tables, lobes, self.wo, random, transport)?;
+        let direction = self.in_scene(sample.wi).normalize_or_zero();
+        self.is_sound(direction, sample.wi).then_some(BsdfSample { wi: direction, ..sample })
+    }
+
+    /// Whether light from behind matters too.
+    pub(crate) fn is_transparent(&self) -> bool {
+        self.bsdf.kind == DIELECTRIC
+    }
+
+    /// The ray in a direction up to a distance.
+    pub(crate) fn ray(&self, direction: Vec3, distance: f32) -> Ray {
+        // Off the surface, on the side that it goes to.
+        let side = self.face * self.epsilon.copysign(self.face.dot(direction));
+        Ray { origin: self.point + side, direction, t_min: 0.0, t_max: distance, inside: false }
+    }
+
+    /// The ray to a place that must be free for the place to be seen.
+    pub(crate) fn ray_to(&self, target: Vec3, target_epsilon: f32) -> Ray {
+        let toward = target - self.point;
+        let side = self.face * self.epsilon.copysign(self.face.dot(toward));
+        let origin = self.point + side;
+        let path = target - origin;
+        let length = path.length();
+        let end = 1.0 - 2.0 * (self.epsilon + target_epsilon) / length.max(f32::MIN_POSITIVE);
+        Ray { origin, direction: path, t_min: 0.0, t_max: end.max(0.0), inside: false }
+    }
+}
