@@ -137,28 +137,63 @@ fn glossy_bound(bsdf: &Bsdf, tables: &[f32], cos_o: f32, cos_normal: f32, cos_mi
     }
 }
 
-/// At most so much light, as a sum of channels, comes from a cluster; see [`bsdf_bound`] for the weights.
-pub fn cluster_bound(
+/// How much a cluster may matter: an upper bound of its light but for the distance, and between which squared distances its lights
+/// are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClusterReach {
+    /// Light, as a sum of channels, at a distance of 1 at most.
+    pub factor: f32,
+    /// Squared distance of the nearest corner of its box, at least that of the clamp; 0 from within without one.
+    pub nearest_sq: f32,
+    /// Squared distance of the farthest corner, at least that of the clamp.
+    pub farthest_sq: f32,
+}
+
+/// What a cluster may send; see [`bsdf_bound`] for the weights.
+pub fn cluster_reach(
     node: &ClusterNode,
     receiver: &BoundReceiver,
     bsdf: &Bsdf,
     tables: &[f32],
     weights: [f32; 2],
-) -> f32 {
+) -> ClusterReach {
     let half = (node.upper - node.lower) * 0.5;
     let center = (node.upper + node.lower) * 0.5 - receiver.point;
+    let nearest_sq = box_distance_sq(center, half).max(receiver.clamp_sq);
+    let farthest_sq = (center.abs() + half).length_squared().max(receiver.clamp_sq);
+    let nothing = ClusterReach { factor: 0.0, nearest_sq, farthest_sq };
     let emitted = widened_cosine(box_cosine(node.axis, -center, half), node.cos_cone);
     if emitted <= 0.0 {
-        return 0.0;
+        return nothing;
     }
     let cos_normal = box_cosine(receiver.normal, center, half);
     if cos_normal <= 0.0 {
-        return 0.0;
+        return nothing;
     }
     let cos_mirror = if weights[1] > 0.0 { box_cosine(receiver.mirror, center, half) } else { 0.0 };
     let material = bsdf_bound(bsdf, tables, weights, receiver.cos_o, cos_normal, cos_mirror);
-    let distance_sq = box_distance_sq(center, half).max(receiver.clamp_sq).max(f32::MIN_POSITIVE);
-    node.power * material * emitted / distance_sq * BOUND_MARGIN
+    ClusterReach { factor: node.power * material * emitted, ..nothing }
+}
+
+/// At most so much light, as a sum of channels, comes from a cluster.
+pub fn reach_bound(reach: &ClusterReach) -> f32 {
+    reach.factor / reach.nearest_sq.max(f32::MIN_POSITIVE) * BOUND_MARGIN
+}
+
+/// The probability with which the first of two clusters is drawn; `None` if neither sends anything. The mean of what their
+/// nearest and what their farthest corners suggest: the nearest alone would favour a large box near by (Yuksel 2019, "Stochastic
+/// Lightcuts", section 3.2).
+pub fn first_probability(first: &ClusterReach, second: &ClusterReach) -> Option<f32> {
+    if first.factor <= 0.0 || second.factor <= 0.0 {
+        let is_any = first.factor + second.factor > 0.0;
+        return is_any.then_some(if first.factor > 0.0 { 1.0 } else { 0.0 });
+    }
+    let share = |a: f32, b: f32| a / (a + b);
+    let far = share(first.factor * second.farthest_sq, second.factor * first.farthest_sq);
+    if first.nearest_sq <= 0.0 || second.nearest_sq <= 0.0 {
+        return Some(far);
+    }
+    Some(0.5 * (far + share(first.factor * second.nearest_sq, second.factor * first.nearest_sq)))
 }
 
 #[cfg(test)]
@@ -240,6 +275,19 @@ mod tests {
         ]
     }
 
+    #[test]
+    fn clusters_are_drawn_by_what_they_may_send() {
+        let reach = |factor, nearest_sq, farthest_sq| ClusterReach { factor, nearest_sq, farthest_sq };
+        let near = |a: &ClusterReach, b: &ClusterReach| first_probability(a, b).unwrap();
+        assert_eq!(first_probability(&reach(0.0, 1.0, 1.0), &reach(0.0, 1.0, 1.0)), None);
+        assert_eq!(near(&reach(0.0, 1.0, 1.0), &reach(1.0, 1.0, 1.0)), 0.0);
+        assert_eq!(near(&reach(3.0, 2.0, 2.0), &reach(1.0, 2.0, 2.0)), 0.75);
+        assert_eq!(near(&reach(1.0, 0.0, 4.0), &reach(1.0, 1.0, 4.0)), 0.5);
+        let (a, b) = (reach(1.0, 1.0, 9.0), reach(1.0, 4.0, 16.0));
+        assert!((near(&a, &b) - 0.5 * (0.8 + 0.64)).abs() < 1e-6);
+        assert!((near(&a, &b) + near(&b, &a) - 1.0).abs() < 1e-6);
+    }
+
     /// 10,000 random clusters for every material: no light of a cluster sends more than its share of the bound.
     #[test]
     fn no_light_of_a_cluster_exceeds_the_bound() {
@@ -262,7 +310,7 @@ mod tests {
                     cos_o,
                     clamp_sq: 0.01,
                 };
-                let bound = cluster_bound(&node, &receiver, &bsdf, &tables, [1.0; 2]);
+                let bound = reach_bound(&cluster_reach(&node, &receiver, &bsdf, &tables, [1.0; 2]));
                 let tangents = frame(normal);
                 let local = |v: Vec3| Vec3::new(tangents.0.dot(v), tangents.1.dot(v), normal.dot(v));
                 for m in 0..8 {

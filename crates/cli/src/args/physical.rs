@@ -29,7 +29,7 @@ pub(crate) struct PhysicalFlags {
     /// a few thousand.
     #[arg(long, value_name = "N")]
     vpls: Option<u32>,
-    /// Error of a cluster, relative to the pixel's light, up to which one VPL stands for it [default: 0.05]
+    /// Error of a cluster, relative to the pixel's light, up to which one VPL stands for it [default: 0.3]
     ///
     /// The picture converges whatever it is: smaller cuts are noisier and faster. 0 opens every cluster.
     #[arg(long, value_name = "X")]

@@ -36,6 +36,8 @@ pub(crate) struct Before {
     pub(crate) at: Interaction,
     /// Density of the direction that it took; 0 of a single direction.
     pub(crate) pdf: f32,
+    /// Lights that were drawn there.
+    pub(crate) lights: u32,
 }
 
 impl Before {
@@ -43,40 +45,63 @@ impl Before {
     /// the camera sees, or that comes from a single direction, cannot be drawn.
     pub(crate) fn weight(before: Option<&Self>, light_pdf: impl Fn(&Interaction) -> f32) -> f32 {
         match before {
-            Some(before) if before.pdf > 0.0 => power_heuristic(before.pdf, light_pdf(&before.at)),
+            Some(before) if before.pdf > 0.0 => {
+                power_heuristic(before.pdf, light_pdf(&before.at) * before.lights as f32)
+            }
             _ => 1.0,
         }
     }
 }
 
-/// Light of one drawn light at a place; `value` is the BSDF times the cosine for a direction, and `lobes` those from which the
-/// path goes on.
-pub(crate) fn direct_light(
-    scene: &Scene<'_>,
-    at: &Interaction,
-    lobes: u32,
-    random: [f32; 3],
-    counts: &mut Counts,
-    value: impl Fn(Vec3) -> Vec3,
-) -> Vec3 {
-    if lobes & lobes_of(&at.bsdf) & (MATT | GLOSSY) == 0 {
-        return Vec3::ZERO;
+/// The light of drawn lights at a place.
+pub(crate) struct DirectLight<'a> {
+    pub(crate) scene: &'a Scene<'a>,
+    pub(crate) at: &'a Interaction,
+    /// Lobes from which the path goes on.
+    pub(crate) lobes: u32,
+    /// Number of lights.
+    pub(crate) lights: u32,
+}
+
+impl DirectLight<'_> {
+    /// The estimate; `value` is the BSDF times the cosine for a direction.
+    pub(crate) fn estimate(
+        &self,
+        mut random: impl FnMut() -> [f32; 3],
+        counts: &mut Counts,
+        value: impl Fn(Vec3) -> Vec3,
+    ) -> Vec3 {
+        if self.lobes & lobes_of(&self.at.bsdf) & (MATT | GLOSSY) == 0 {
+            return Vec3::ZERO;
+        }
+        let number = self.lights as f32;
+        let mut sum = Vec3::ZERO;
+        for k in 0..self.lights {
+            let [u, v, choice] = random();
+            // Each from its own part of all lights.
+            sum += self.light([u, v, (k as f32 + choice) / number], counts, &value);
+        }
+        sum / number
     }
-    let Some(arriving) = scene.sample_light(at, random) else { return Vec3::ZERO };
-    let value = value(arriving.direction);
-    if value == Vec3::ZERO {
-        return Vec3::ZERO;
+
+    fn light(&self, random: [f32; 3], counts: &mut Counts, value: &impl Fn(Vec3) -> Vec3) -> Vec3 {
+        let Some(arriving) = self.scene.sample_light(self.at, random) else { return Vec3::ZERO };
+        let value = value(arriving.direction);
+        if value == Vec3::ZERO {
+            return Vec3::ZERO;
+        }
+        counts.shadow += 1;
+        if !self.scene.is_free(&arriving.shadow) {
+            return Vec3::ZERO;
+        }
+        let weight = if arriving.pdf == 0.0 {
+            1.0
+        } else {
+            let by_chance = self.at.pdf(&self.scene.world.tables, self.lobes, arriving.direction);
+            power_heuristic(arriving.pdf * self.lights as f32, by_chance)
+        };
+        value * arriving.light * weight
     }
-    counts.shadow += 1;
-    if !scene.is_free(&arriving.shadow) {
-        return Vec3::ZERO;
-    }
-    let weight = if arriving.pdf == 0.0 {
-        1.0
-    } else {
-        power_heuristic(arriving.pdf, at.pdf(&scene.world.tables, lobes, arriving.direction))
-    };
-    value * arriving.light * weight
 }
 
 impl Scene<'_> {

@@ -5,7 +5,9 @@ use super::pass::Counts;
 use super::scene::{Interaction, Scene};
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{GLOSSY, MATT, Transport};
-use lightcuts_kernel::cluster::{BoundReceiver, LIGHT_CHILD, cluster_bound, light_power};
+use lightcuts_kernel::cluster::{
+    BoundReceiver, ClusterReach, LIGHT_CHILD, cluster_reach, first_probability, light_power, reach_bound,
+};
 use lightcuts_kernel::ray::RELATIVE_EPSILON;
 use lightcuts_kernel::virtual_light::{VirtualLight, virtual_emission};
 
@@ -84,10 +86,10 @@ impl<'a> Receiver<'a> {
         if self.scene.is_free(&self.at.ray_to(light.position, epsilon)) { sent } else { Vec3::ZERO }
     }
 
-    fn bound(&self, tree: &ClusterTree, node: u32, counts: &mut Counts) -> f32 {
+    fn reach(&self, tree: &ClusterTree, node: u32, counts: &mut Counts) -> ClusterReach {
         counts.bounds += 1;
         let tables = &self.scene.world.tables[..];
-        cluster_bound(&tree.nodes[node as usize], &self.bound, &self.at.bsdf, tables, self.weights)
+        cluster_reach(&tree.nodes[node as usize], &self.bound, &self.at.bsdf, tables, self.weights)
     }
 
     /// The sum over all lights.
@@ -160,7 +162,7 @@ impl<'a> Receiver<'a> {
             done.size += 1;
             return;
         }
-        let bound = self.bound(tree, child, counts);
+        let bound = reach_bound(&self.reach(tree, child, counts));
         *open += unit * tree.nodes[child as usize].power;
         heap.push(Entry { bound, node: child, unit });
     }
@@ -171,7 +173,7 @@ impl<'a> Receiver<'a> {
         self.light(light, counts) / light_power(light.intensity)
     }
 
-    /// An estimate by some lights, each drawn down the tree by the bounds of what it may send (after Yuksel 2019, "Stochastic
+    /// An estimate by some lights, each drawn down the tree by what it may send (after Yuksel 2019, "Stochastic
     /// Lightcuts").
     pub(crate) fn drawn(
         &self,
@@ -197,18 +199,16 @@ impl<'a> Receiver<'a> {
         let (mut child, mut probability, mut random) = (tree.root()?, 1.0, random);
         while child & LIGHT_CHILD == 0 {
             let node = &tree.nodes[child as usize];
-            let mut weight = |child: u32| {
-                if child & LIGHT_CHILD != 0 {
-                    light_power(self.unshadowed(&tree.lights[(child & !LIGHT_CHILD) as usize]))
-                } else {
-                    self.bound(tree, child, counts)
+            let mut reach = |child: u32| {
+                if child & LIGHT_CHILD == 0 {
+                    return self.reach(tree, child, counts);
                 }
+                let light = &tree.lights[(child & !LIGHT_CHILD) as usize];
+                let distance_sq = (light.position - self.at.point).length_squared().max(self.bound.clamp_sq);
+                let factor = light_power(self.unshadowed(light)) * distance_sq;
+                ClusterReach { factor, nearest_sq: distance_sq, farthest_sq: distance_sq }
             };
-            let (left, right) = (weight(node.left), weight(node.right));
-            if left + right <= 0.0 {
-                return None;
-            }
-            let share = left / (left + right);
+            let share = first_probability(&reach(node.left), &reach(node.right))?;
             if random < share {
                 (child, probability, random) = (node.left, probability * share, random / share);
             } else {

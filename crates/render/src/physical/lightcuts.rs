@@ -5,7 +5,7 @@
 //! the first one is left with what the clamp of their distance takes away (Kollig & Keller 2004).
 
 use super::cluster_tree::ClusterTree;
-use super::direct::{Before, direct_light};
+use super::direct::{Before, DirectLight};
 use super::gather::{CutHeap, Gathered, Receiver};
 use super::pass::{Counts, FirstHit, Sampled};
 use super::path::{MAX_VERTICES, Radiance};
@@ -21,6 +21,9 @@ use std::cell::RefCell;
 const LEAST_GATHERED_ALPHA: f32 = 0.15;
 /// The same of Phong's.
 const GREATEST_GATHERED_EXPONENT: f32 = 60.0;
+
+/// Lights that are drawn at a vertex that gathers a whole cut: its share of the time is small.
+const FIRST_LIGHTS: u32 = 8;
 
 /// Virtual lights that are drawn where a path comes to its second matt vertex.
 const DRAWN_LIGHTS: u32 = 4;
@@ -92,17 +95,22 @@ impl Lightcuts<'_> {
             if lobes & lobes_of(&at.bsdf) == 0 {
                 break;
             }
-            let [u, v, choice, survival] = randoms.next();
-            let direct =
-                direct_light(scene, &at, lobes, [u, v, choice], counts, |direction| walk.value(scene, &at, direction));
+            let lights = if walk.is_first { FIRST_LIGHTS } else { 1 };
+            let direct = DirectLight { scene, at: &at, lobes, lights };
+            let random = || {
+                let [u, v, choice, _] = randoms.next();
+                [u, v, choice]
+            };
+            let direct = direct.estimate(random, counts, |direction| walk.value(scene, &at, direction));
             sampled.radiance.add(vertex + 1, direct);
             let gathered = self.gather(scene, &at, &walk, pixel, randoms, counts);
             sampled.radiance.add(vertex + 2, gathered.light);
             sampled.cut += gathered.size as f32;
             sampled.bound += gathered.bound;
-            let Some((next, left, direction)) = walk.scatter(scene, &at, lobes, [r0, r1, r2]) else { break };
+            let Some((next, left, direction)) = walk.scatter(scene, &at, lobes, lights, [r0, r1, r2]) else { break };
             (walk, compensated) = (next, left);
             if vertex + 1 >= SURE_VERTICES {
+                let [survival, ..] = randoms.next();
                 let survives = walk.rest.max(walk.matt + compensated).max_element().min(0.95);
                 if survival >= survives {
                     break;
@@ -186,10 +194,17 @@ impl Walk {
     }
 
     /// Goes on in a drawn direction; with what a short ray may give to matt lobes besides.
-    fn scatter(&self, scene: &Scene<'_>, at: &Interaction, lobes: u32, random: [f32; 3]) -> Option<(Self, Vec3, Vec3)> {
+    fn scatter(
+        &self,
+        scene: &Scene<'_>,
+        at: &Interaction,
+        lobes: u32,
+        lights: u32,
+        random: [f32; 3],
+    ) -> Option<(Self, Vec3, Vec3)> {
         let tables = &scene.world.tables[..];
         let sample = at.sample(tables, lobes, random, Transport::Radiance)?;
-        let before = Some(Before { at: *at, pdf: sample.pdf });
+        let before = Some(Before { at: *at, pdf: sample.pdf, lights });
         if sample.lobe == SPECULAR {
             let factor = self.rest * sample.weight;
             let next = Self { matt: factor, rest: factor, is_first: self.is_first, before };

@@ -1,7 +1,7 @@
 //! Path tracing: the reference (Kajiya 1986), with light drawn at every vertex and weighed by multiple importance sampling
 //! (Veach 1997).
 
-use super::direct::{Before, direct_light};
+use super::direct::{Before, DirectLight};
 use super::pass::{Counts, FirstHit};
 use super::randoms::Randoms;
 use super::scene::{Cone, Interaction, Scene};
@@ -44,7 +44,8 @@ pub(crate) fn trace_path(
         }
         let [u, v, choice, survival] = randoms.next();
         let value = |direction| at.scattered(tables, ALL_LOBES, direction, Transport::Radiance);
-        let direct = direct_light(scene, &at, ALL_LOBES, [u, v, choice], counts, value);
+        let direct = DirectLight { scene, at: &at, lobes: ALL_LOBES, lights: 1 };
+        let direct = direct.estimate(|| [u, v, choice], counts, value);
         sum.add(vertex + 1, throughput * direct);
         let Some(sample) = at.sample(tables, ALL_LOBES, [r0, r1, r2], Transport::Radiance) else { break };
         throughput *= sample.weight;
@@ -60,7 +61,7 @@ pub(crate) fn trace_path(
         }
         // Behind a matt vertex textures are looked up at points, as light paths do.
         cone = if sample.lobe == SPECULAR { cone.after(hit.t) } else { Cone::NONE };
-        before = Some(Before { at, pdf: sample.pdf });
+        before = Some(Before { at, pdf: sample.pdf, lights: 1 });
         ray = at.ray(sample.wi, f32::INFINITY);
         counts.bounces += 1;
     }

@@ -165,7 +165,7 @@ fn white_furnace() {
             ..PhysicalScene::default()
         };
         for integrator in [Integrator::Path, Integrator::Lightcuts] {
-            let rendering = render(&scene, &settings(integrator, 24, 64));
+            let rendering = render(&scene, &settings(integrator, 16, 512));
             let mean = mean(&rendering);
             println!("{name}, {integrator:?}: {:.4}", mean.x);
             assert!((mean.x - 1.0).abs() < 0.005, "{name}, {integrator:?}: {mean}");

@@ -33,7 +33,7 @@ impl Default for Physical {
             time_limit: 0.0,
             noise: 0.0,
             vpls: 2000,
-            cut_error: 0.05,
+            cut_error: 0.3,
             max_cut: 1000,
             clamp: 0.03,
             compensation: true,
