@@ -41,6 +41,7 @@ impl Plan {
         outputs.check(&sources.inputs)?;
         let imported = load(&sources.scene, &sources.search_path)?;
         let settings = resolved(&imported.scene, &sources.files, args)?;
+        job::require_fitting(&args.settings, settings.run.model)?;
         let scene = in_model(imported.scene, &settings)?;
         sources.inputs.extend(imported.files);
         outputs.check(&sources.inputs)?;

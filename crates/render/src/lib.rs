@@ -54,7 +54,8 @@ pub struct Options {
     pub simd: Simd,
 }
 
-/// Renders a world on the threads of the current rayon pool. Fails only if a parameter is out of range. A monitor that
+/// Renders a world in the thesis' model of light on the threads of the current rayon pool. Fails only if a parameter is out of
+/// range. A monitor that
 /// cancels gets what there is, with `stats.complete` false.
 pub fn render(
     world: &World,
@@ -76,5 +77,6 @@ pub fn render_on(
     monitor: &dyn Monitor,
 ) -> Result<Rendering, SettingsError> {
     settings.validate()?;
+    settings.require_model(Model::Thesis)?;
     Ok(job::Job::new(world, settings, options, stations, monitor).run())
 }

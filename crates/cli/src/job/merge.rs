@@ -4,7 +4,7 @@ use super::JobFile;
 use crate::args::SettingFlags;
 use crate::exit::Failure;
 use lightcuts::Settings;
-use lightcuts::rendering::overlay;
+use lightcuts::rendering::{Model, overlay};
 use toml::{Table, Value};
 
 /// `scene` (built-in defaults with the scene's recommendations), under the job files in their order, under the flags;
@@ -27,6 +27,39 @@ pub(crate) fn resolve(scene: &Settings, files: &[JobFile], flags: &SettingFlags)
         }
     })?;
     Ok(settings)
+}
+
+/// Tables and keys that matter in the thesis' model of light only.
+const OF_THESIS: [&str; 9] = [
+    "vpl",
+    "ambient-occlusion",
+    "caustics",
+    "bloom",
+    "gather.threshold",
+    "run.max-depth",
+    "sampling.sampler",
+    "sampling.adaptive-samples",
+    "sampling.adaptive-threshold",
+];
+
+/// Those of the physical model.
+const OF_PHYSICAL: [&str; 1] = ["physical"];
+
+/// Fails if the command line sets what does not matter in a model of light.
+pub(crate) fn require_fitting(flags: &SettingFlags, model: Model) -> Result<(), Failure> {
+    let table =
+        Table::try_from(flags).map_err(|error| Failure::usage(error.to_string(), "see `lightcuts render --help`"))?;
+    let (foreign, name) = match model {
+        Model::Thesis => (&OF_PHYSICAL[..], "thesis'"),
+        Model::Physical => (&OF_THESIS[..], "physical"),
+    };
+    match foreign.iter().find(|key| is_set(&table, key)) {
+        None => Ok(()),
+        Some(key) => Err(Failure::usage(
+            format!("an option of `{key}` is given, which has no meaning in the {name} model of light"),
+            "leave it out, or choose the other model with --model",
+        )),
+    }
 }
 
 /// Whether `table.key` has a value.

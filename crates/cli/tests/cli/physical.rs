@@ -95,6 +95,12 @@ fn scenes_of_the_thesis_can_be_rendered_with_it_and_not_the_other_way_round() {
         );
     }
     assert_eq!(folder.run("render scene.txt --gather stochastic").get_output().status.code(), Some(2));
+    for arguments in
+        ["ball.toml --caustics", "ball.toml --max-depth 3", "scene.txt --vpls 10", "scene.txt --integrator path"]
+    {
+        let said = stderr(&folder.run(&format!("render {arguments}")).code(2));
+        assert!(said.contains("has no meaning in the"), "{arguments}: {said}");
+    }
     let said = stdout(&folder.run("info ball.toml").success());
     assert!(said.contains("physical") && said.contains("1 luminous surface") && said.contains("2 lambert"), "{said}");
     folder.run("info ball.toml --json").success();

@@ -3,7 +3,7 @@
 use super::fault::PlanError;
 use super::file::{ExperimentFile, SceneValues};
 use lightcuts::Settings;
-use lightcuts::rendering::{TomlFault, overlay};
+use lightcuts::rendering::{Model, TomlFault, overlay};
 use lightcuts::scene::SceneDesc;
 use toml::Table;
 
@@ -33,7 +33,8 @@ pub(super) fn resolve(
     let mut settings: Settings =
         table.try_into().map_err(|error: toml::de::Error| unexpected(&TomlFault::new(&error).message))?;
     settings.run.seed = seed;
-    settings.validate().map_err(|error| {
+    // Experiments render scenes of the thesis' model.
+    settings.validate().and_then(|()| settings.require_model(Model::Thesis)).map_err(|error| {
         let places = layers.iter().rev().map(|(place, _)| format!("{place}.{}", error.name));
         let culprit = places.into_iter().find(|place| file.source.has(place));
         let place = culprit.unwrap_or_else(|| format!("scene.{}.file", tables.scene));

@@ -20,7 +20,7 @@ pub use rendering::PhysicalRendering;
 
 use crate::cpu::Simd;
 use crate::monitor::Monitor;
-use crate::settings::{Settings, SettingsError};
+use crate::settings::{Model, Settings, SettingsError};
 use lightcuts_world::PhysicalWorld;
 
 /// Renders a physical world on the threads of the current rayon pool; `settings.physical` says how. Fails only if a parameter is
@@ -32,5 +32,6 @@ pub fn render_physical(
     monitor: &dyn Monitor,
 ) -> Result<PhysicalRendering, SettingsError> {
     settings.validate()?;
+    settings.require_model(Model::Physical)?;
     Ok(job::PhysicalJob::new(world, settings, simd, monitor).run())
 }

@@ -35,6 +35,12 @@ impl Settings {
         self.validate_effects()
     }
 
+    /// Fails unless this is the model of light.
+    pub fn require_model(&self, model: Model) -> Result<(), SettingsError> {
+        let name = |model| if model == Model::Thesis { "thesis" } else { "physical" };
+        ensure("run.model", name(self.run.model), self.run.model == model, name(model))
+    }
+
     fn validate_sampling(&self) -> Result<(), SettingsError> {
         let sampling = &self.sampling;
         let most = if self.run.model == Model::Physical { 1 << 24 } else { 4096 };
