@@ -44,8 +44,7 @@ pub(crate) struct PhysicalJob<'a> {
     stats: Stats,
     counts: Counts,
     started: Instant,
-    /// Virtual lights that a path leaves, on average of those before.
-    lights_per_path: f64,
+    /// Light paths so far, and the virtual lights that they left.
     paths: u64,
     lights: u64,
 }
@@ -62,7 +61,6 @@ impl<'a> PhysicalJob<'a> {
             stats: Stats::default(),
             counts: Counts::default(),
             started: Instant::now(),
-            lights_per_path: 0.0,
             paths: 0,
             lights: 0,
         }
@@ -183,7 +181,6 @@ impl<'a> PhysicalJob<'a> {
     fn count_lights(&mut self, paths: u32, set: &VplSet) {
         self.paths += u64::from(paths);
         self.lights += set.lights.len() as u64;
-        self.lights_per_path = self.lights as f64 / self.paths as f64;
         self.stats.rays.photon += set.rays;
     }
 
@@ -191,7 +188,8 @@ impl<'a> PhysicalJob<'a> {
     /// is fixed before they are traced.
     fn trace_vpls(&mut self, sample: u32) -> VplSet {
         let Some(origins) = &self.origins else { return VplSet::default() };
-        let wanted = f64::from(self.settings.physical.vpls) / self.lights_per_path.max(1e-3);
+        let lights_per_path = self.lights as f64 / self.paths.max(1) as f64;
+        let wanted = f64::from(self.settings.physical.vpls) / lights_per_path.max(1e-3);
         let paths = (wanted as u32).clamp(1, self.settings.physical.vpls.saturating_mul(8));
         let set = trace_vpls(&self.scene, origins, paths, self.stream(LIGHT_PATHS, sample));
         self.stats.vpl_count = set.lights.len() as u64;

@@ -2,16 +2,22 @@
 //!
 //! The same structs are the TOML job file's tables; unknown keys are errors.
 
+mod display;
+mod effects;
 mod physical;
+mod picture;
 mod tables;
 mod validate;
 
+pub use display::{Display, ToneMappingKind};
+pub use effects::{AmbientOcclusion, Bloom, Caustics};
 pub use physical::{Integrator, Physical};
+pub use picture::{Filter, FilterKind, ImageSize, Sampling};
 pub use tables::{TomlFault, overlay, value_at};
 pub use validate::SettingsError;
 
-use lightcuts_image::{GlobalToneMapping, LocalToneMapping, ToneMapping, Transfer};
-use lightcuts_scene::{SamplerKind, SceneDesc};
+use lightcuts_image::Transfer;
+use lightcuts_scene::SceneDesc;
 use serde::{Deserialize, Serialize};
 
 /// A whole job apart from the scene: what [`crate::render`] needs to make a picture again.
@@ -74,91 +80,6 @@ pub enum Model {
     Physical,
 }
 
-/// Size of the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct ImageSize {
-    /// Width in pixels.
-    pub width: u32,
-    /// Height in pixels.
-    pub height: u32,
-}
-
-impl Default for ImageSize {
-    fn default() -> Self {
-        Self { width: 512, height: 512 }
-    }
-}
-
-/// Samples per pixel and where they lie.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Sampling {
-    /// Pattern of the samples.
-    pub sampler: SamplerKind,
-    /// Samples of every pixel.
-    pub samples: u32,
-    /// Samples of pixels that differ from a neighbour; no adaptive anti-aliasing unless above `samples`.
-    pub adaptive_samples: u32,
-    /// Difference between neighbouring pixels, in any channel, from which on they get `adaptive_samples`.
-    pub adaptive_threshold: f32,
-}
-
-impl Default for Sampling {
-    fn default() -> Self {
-        Self { sampler: SamplerKind::Stratified, samples: 1, adaptive_samples: 0, adaptive_threshold: 0.05 }
-    }
-}
-
-/// How samples become pixels.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Filter {
-    /// Form of the filter.
-    pub kind: FilterKind,
-    /// Radius in pixels; box 0.5, triangle 1, Gaussian and Mitchell 2 where absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub radius: Option<f32>,
-    /// Falloff of the Gaussian.
-    pub alpha: f32,
-    /// Mitchell's B.
-    pub mitchell_b: f32,
-    /// Mitchell's C.
-    pub mitchell_c: f32,
-}
-
-impl Default for Filter {
-    fn default() -> Self {
-        Self { kind: FilterKind::Box, radius: None, alpha: 2.0, mitchell_b: 1.0 / 3.0, mitchell_c: 1.0 / 3.0 }
-    }
-}
-
-impl Filter {
-    /// The radius in pixels, explicit or of its kind.
-    pub fn resolved_radius(&self) -> f32 {
-        self.radius.unwrap_or(match self.kind {
-            FilterKind::Box => 0.5,
-            FilterKind::Triangle => 1.0,
-            FilterKind::Gaussian | FilterKind::Mitchell => 2.0,
-        })
-    }
-}
-
-/// Forms of pixel filter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum FilterKind {
-    /// Constant.
-    #[default]
-    Box,
-    /// Linear falloff.
-    Triangle,
-    /// exp(-alpha x^2), lowered to reach 0 at the radius.
-    Gaussian,
-    /// Mitchell & Netravali 1988, with negative lobes.
-    Mitchell,
-}
-
 /// How VPLs are placed: at hits of the first pass.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
@@ -211,128 +132,6 @@ pub enum Strategy {
     LightcutsExhaustive,
     /// A few, drawn down the tree by what they may send (after Yuksel 2019). Physical model only.
     Stochastic,
-}
-
-/// Ambient occlusion of the first pass. The original's angular grid decides only the number of rays; they are
-/// distributed in proportion to the cosine.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub struct AmbientOcclusion {
-    /// Whether it is computed.
-    pub enabled: bool,
-    /// Half angle of the cone of directions about the normal, in degrees.
-    pub angle: f32,
-    /// Step of the grid in degrees: (2 angle / step + 1)^2 rays per hit.
-    pub step: f32,
-    /// Distance from which on a surface no longer occludes, in scene units.
-    pub range: f32,
-    /// Factor on the result.
-    pub factor: f32,
-}
-
-impl Default for AmbientOcclusion {
-    fn default() -> Self {
-        Self { enabled: false, angle: 50.0, step: 4.0, range: 90.0, factor: 1.0 }
-    }
-}
-
-impl AmbientOcclusion {
-    /// Number of rays per hit.
-    pub fn rays(&self) -> u32 {
-        let per_side = (2.0 * self.angle / self.step) as u32 + 1;
-        per_side * per_side
-    }
-}
-
-/// Photon-mapped caustics of the second pass.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Caustics {
-    /// Whether photons are shot.
-    pub enabled: bool,
-    /// Spacing of the photons on the disk through a target's bounding sphere, in scene units; wider where all lights and
-    /// targets together would take more than 2^26 photons.
-    pub step: f32,
-    /// Radius of the gathered disk, in scene units.
-    pub radius: f32,
-    /// Fewest photons in the disk that count.
-    pub min_photons: u32,
-    /// Least F of a target.
-    pub min_reflection: f32,
-    /// Least R of a target.
-    pub min_refraction: f32,
-    /// Least r + g + b of a diffuse colour that catches photons.
-    pub min_diffuse: f32,
-}
-
-impl Default for Caustics {
-    fn default() -> Self {
-        Self {
-            enabled: false,
-            step: 1.0,
-            radius: 4.0,
-            min_photons: 10,
-            min_reflection: 0.2,
-            min_refraction: 0.1,
-            min_diffuse: 0.9,
-        }
-    }
-}
-
-/// Glow around bright places of the finished picture.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Bloom {
-    /// Whether it is applied.
-    pub enabled: bool,
-    /// Radius in pixels.
-    pub radius: f32,
-    /// Share of the blurred picture, 0..1.
-    pub weight: f32,
-}
-
-impl Default for Bloom {
-    fn default() -> Self {
-        Self { enabled: false, radius: 12.0, weight: 0.7 }
-    }
-}
-
-/// From linear light to displayed values; for PNG only.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Display {
-    /// Tone mapping operator.
-    pub tone_mapping: ToneMappingKind,
-    /// Parameters of the global operator.
-    pub global: GlobalToneMapping,
-    /// Parameters of the local operator.
-    pub local: LocalToneMapping,
-    /// Transfer curve; the thesis shows values as they are.
-    pub transfer: Transfer,
-}
-
-/// Tone mapping operators.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ToneMappingKind {
-    /// Values as they are.
-    #[default]
-    None,
-    /// The thesis' global operator.
-    Global,
-    /// Reinhard et al. 2002, local: the menu entry that the original left empty.
-    Local,
-}
-
-impl Display {
-    /// The chosen operator with its parameters.
-    pub fn operator(&self) -> ToneMapping {
-        match self.tone_mapping {
-            ToneMappingKind::None => ToneMapping::None,
-            ToneMappingKind::Global => ToneMapping::Global(self.global),
-            ToneMappingKind::Local => ToneMapping::Local(self.local),
-        }
-    }
 }
 
 impl Settings {

@@ -1,0 +1,66 @@
+//! Integrators and strategies against each other, and one picture whatever computes it.
+
+use super::scenes::{mean, render, room, scaled, settings, variants};
+use crate::cpu::Simd;
+use crate::monitor::Unwatched;
+use crate::physical::{PhysicalRendering, render_physical};
+use crate::settings::{Integrator, Strategy};
+use lightcuts_world::PhysicalWorld;
+
+/// Every strategy shows what path tracing shows, at every pixel, as far as the noise of both tells: the greatest of all normal
+/// deviates is not above what chance gives in a thousand (Sidak's correction).
+#[test]
+fn every_pixel_agrees_with_path_tracing() {
+    for (name, scene) in variants() {
+        let reference = render(&scene, &settings(Integrator::Path, 16, 1024));
+        for strategy in [Strategy::All, Strategy::Lightcuts, Strategy::Stochastic] {
+            let mut settings = settings(Integrator::Lightcuts, 16, 96);
+            settings.gather.strategy = strategy;
+            settings.physical.vpls = 300;
+            settings.physical.cut_error = 0.1;
+            let rendering = render(&scene, &settings);
+            let brightness =
+                |r: &PhysicalRendering, k: usize| f64::from(r.beauty.pixels()[k].iter().sum::<f32>()) / 3.0;
+            let mut deviates: Vec<f64> = Vec::new();
+            for k in 0..256 {
+                let variance = f64::from(reference.variance.pixels()[k] + rendering.variance.pixels()[k]);
+                if variance > 0.0 {
+                    deviates.push((brightness(&rendering, k) - brightness(&reference, k)) / variance.sqrt());
+                }
+            }
+            let greatest = deviates.iter().map(|z| z.abs()).fold(0.0, f64::max);
+            let mean_sq = deviates.iter().map(|z| z * z).sum::<f64>() / deviates.len() as f64;
+            println!("{name}, {strategy:?}: greatest |z| {greatest:.2}, mean z^2 {mean_sq:.2} of {}", deviates.len());
+            // 1 - (1 - 0.001)^(1 / 256) on both sides is 4.6 deviations.
+            assert!(greatest < 4.6 && mean_sq < 1.5, "{name}, {strategy:?}: {greatest} {mean_sq}");
+        }
+    }
+}
+
+/// Light per area and angle knows no unit of length: a power of two changes no bit, and a factor of 1,000 only what rounding
+/// does to single paths.
+#[test]
+fn a_thousand_times_as_large() {
+    let scene = room(false);
+    for integrator in [Integrator::Path, Integrator::Lightcuts] {
+        let settings = settings(integrator, 24, 8);
+        let small = render(&scene, &settings);
+        assert_eq!(render(&scaled(&scene, 1024.0), &settings).beauty.pixels(), small.beauty.pixels());
+        let ratio = mean(&render(&scaled(&scene, 1000.0), &settings)) / mean(&small);
+        println!("{integrator:?}: {ratio:.5}");
+        assert!((ratio - 1.0).abs().max_element() < 0.01, "{integrator:?}: {ratio}");
+    }
+}
+
+/// The same numbers on any number of threads, with and without vector instructions.
+#[test]
+fn the_same_picture_bit_for_bit() {
+    let world = PhysicalWorld::new(&room(true)).unwrap();
+    let settings = settings(Integrator::Lightcuts, 20, 3);
+    let on = |threads, simd| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| render_physical(&world, &settings, simd, &Unwatched).unwrap().beauty)
+    };
+    let expected = on(1, Simd::Off);
+    assert_eq!(on(3, Simd::Auto).pixels(), expected.pixels());
+}

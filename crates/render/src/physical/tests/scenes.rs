@@ -1,0 +1,191 @@
+//! Scenes of the tests, made in code, and how they are rendered.
+
+use crate::cpu::Simd;
+use crate::monitor::Unwatched;
+use crate::physical::{PhysicalRendering, render_physical};
+use crate::settings::{Integrator, Settings};
+use glam::{Affine3A, Vec3};
+use lightcuts_scene::physical::{
+    EmissionDesc, EmitterDesc, EmitterKind, EnvironmentDesc, ImageId, PhysicalCamera, PhysicalObject, PhysicalScene,
+    PhysicalShape, PixelImage, Pixels, Scattering, SurfaceDesc, SurfaceId, Tint, View,
+};
+use lightcuts_scene::{Location, MeshDesc, MeshId, MeshTriangle};
+use lightcuts_world::PhysicalWorld;
+
+pub(super) fn object(shape: PhysicalShape, material: u32) -> PhysicalObject {
+    PhysicalObject { name: String::new(), shape, material: SurfaceId(material), location: Location::default() }
+}
+
+pub(super) fn rectangle(
+    center: Vec3,
+    normal: Vec3,
+    head: Vec3,
+    width: f32,
+    height: f32,
+    material: u32,
+) -> PhysicalObject {
+    object(PhysicalShape::Rectangle { center, normal, head, width, height }, material)
+}
+
+pub(super) fn matt(albedo: Vec3) -> SurfaceDesc {
+    SurfaceDesc { scattering: Scattering::Lambert { albedo: albedo.into() }, ..SurfaceDesc::default() }
+}
+
+pub(super) fn light(radiance: Vec3) -> SurfaceDesc {
+    let emission = Some(EmissionDesc { radiance, image: None, two_sided: false });
+    SurfaceDesc { emission, ..matt(Vec3::ZERO) }
+}
+
+pub(super) fn point(position: Vec3, intensity: Vec3) -> EmitterDesc {
+    EmitterDesc { kind: EmitterKind::Point { position, intensity }, location: Location::default() }
+}
+
+pub(super) fn looking(position: Vec3, target: Vec3, degrees: f32) -> PhysicalCamera {
+    PhysicalCamera {
+        position,
+        direction: target - position,
+        up: if (target - position).normalize().y.abs() > 0.99 { Vec3::Z } else { Vec3::Y },
+        view: View::Perspective { degrees },
+        ..PhysicalCamera::default()
+    }
+}
+
+pub(super) fn settings(integrator: Integrator, size: u32, samples: u32) -> Settings {
+    let mut settings = Settings::for_physical();
+    (settings.image.width, settings.image.height) = (size, size);
+    settings.physical.integrator = integrator;
+    settings.sampling.samples = samples;
+    settings
+}
+
+pub(super) fn render(scene: &PhysicalScene, settings: &Settings) -> PhysicalRendering {
+    let world = PhysicalWorld::new(scene).expect("the scene is sound");
+    render_physical(&world, settings, Simd::Auto, &Unwatched).expect("the settings are sound")
+}
+
+/// Mean of a picture's channels.
+pub(super) fn mean(rendering: &PhysicalRendering) -> glam::DVec3 {
+    let pixels = rendering.beauty.pixels();
+    pixels.iter().map(|&p| Vec3::from(p).as_dvec3()).sum::<glam::DVec3>() / pixels.len() as f64
+}
+
+/// A box of two coloured walls with a lamp under its ceiling, and two boxes; `occluded` turns the lamp to the ceiling, behind a
+/// shade.
+pub(super) fn room(occluded: bool) -> PhysicalScene {
+    let (white, red, green) = (Vec3::splat(0.75), Vec3::new(0.6, 0.1, 0.08), Vec3::new(0.12, 0.5, 0.1));
+    let materials = vec![
+        matt(white),
+        matt(red),
+        matt(green),
+        light(Vec3::new(16.0, 13.0, 9.0)),
+        SurfaceDesc {
+            scattering: Scattering::Plastic { albedo: Vec3::new(0.2, 0.3, 0.7).into(), ior: 1.5, roughness: 0.5 },
+            ..SurfaceDesc::default()
+        },
+    ];
+    let (lamp, lamp_normal) = if occluded { (0.7, Vec3::Y) } else { (0.998, Vec3::NEG_Y) };
+    let mut objects = vec![
+        rectangle(Vec3::new(0.5, 0.0, 0.5), Vec3::Y, Vec3::Z, 1.0, 1.0, 0),
+        rectangle(Vec3::new(0.5, 1.0, 0.5), Vec3::NEG_Y, Vec3::Z, 1.0, 1.0, 0),
+        rectangle(Vec3::new(0.5, 0.5, 0.0), Vec3::Z, Vec3::Y, 1.0, 1.0, 0),
+        rectangle(Vec3::new(0.0, 0.5, 0.5), Vec3::X, Vec3::Y, 1.0, 1.0, 1),
+        rectangle(Vec3::new(1.0, 0.5, 0.5), Vec3::NEG_X, Vec3::Y, 1.0, 1.0, 2),
+        rectangle(Vec3::new(0.5, lamp, 0.5), lamp_normal, Vec3::Z, 0.3, 0.3, 3),
+        object(PhysicalShape::Sphere { center: Vec3::new(0.7, 0.2, 0.6), radius: 0.2 }, 4),
+    ];
+    if occluded {
+        objects.push(rectangle(Vec3::new(0.5, lamp - 0.01, 0.5), Vec3::NEG_Y, Vec3::Z, 0.34, 0.34, 0));
+    }
+    let turned = Affine3A::from_translation(Vec3::new(0.3, 0.0, 0.35)) * Affine3A::from_rotation_y(0.3);
+    objects.push(object(
+        PhysicalShape::Mesh { mesh: MeshId(0), placement: turned, smooth: false, override_material: true },
+        0,
+    ));
+    PhysicalScene {
+        camera: looking(Vec3::new(0.5, 0.5, 2.4), Vec3::new(0.5, 0.5, 0.0), 38.0),
+        objects,
+        materials,
+        meshes: vec![tall_box()],
+        ..PhysicalScene::default()
+    }
+}
+
+/// A box of 0.3 x 0.6 x 0.3, standing on the floor.
+pub(super) fn tall_box() -> MeshDesc {
+    let corner = |k: u32| Vec3::new((k & 1) as f32 - 0.5, (k >> 1 & 1) as f32, (k >> 2) as f32 - 0.5);
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 4, 6, 2], [1, 3, 7, 5], [2, 6, 7, 3], [0, 1, 5, 4]];
+    let triangle = |positions| MeshTriangle { positions, normals: None, texture_coordinates: None, material: None };
+    MeshDesc {
+        positions: (0..8).map(|k| corner(k) * Vec3::new(0.3, 0.6, 0.3)).collect(),
+        triangles: faces.iter().flat_map(|&[a, b, c, d]| [triangle([a, b, c]), triangle([a, c, d])]).collect(),
+        ..MeshDesc::default()
+    }
+}
+
+/// The room with a checkered, uneven wall, glossy things, a sky behind a missing ceiling, or many small lamps in place of one.
+pub(super) fn variants() -> Vec<(&'static str, PhysicalScene)> {
+    let mut textured = room(false);
+    let checker =
+        |x: u32, y: u32| if (x / 2 + y / 2).is_multiple_of(2) { [230, 210, 60, 255] } else { [40, 60, 200, 255] };
+    let bumps = |x: u32, y: u32| [[100, 150, 240, 255], [150, 110, 240, 255]][((x + y) % 2) as usize];
+    let image = |name: &str, of: &dyn Fn(u32, u32) -> [u8; 4], is_color: bool| {
+        let pixels = (0..64).map(|k| of(k % 8, k / 8)).collect();
+        let pixels = if is_color { Pixels::Srgb(pixels) } else { Pixels::Linear(pixels) };
+        PixelImage { name: name.to_owned(), width: 8, height: 8, pixels }
+    };
+    textured.images = vec![image("checker", &checker, true), image("bumps", &bumps, false)];
+    textured.materials[0].scattering =
+        Scattering::Lambert { albedo: Tint { color: Vec3::splat(0.9), image: Some(ImageId(0)) } };
+    textured.materials[0].normal_map = Some(ImageId(1));
+
+    let mut glossy = room(false);
+    glossy.materials[0].scattering =
+        Scattering::Phong { diffuse: Vec3::splat(0.5).into(), specular: Vec3::splat(0.3).into(), exponent: 20.0 };
+    glossy.materials[4].scattering =
+        Scattering::Conductor { eta: Vec3::new(0.2, 0.9, 1.2), k: Vec3::new(3.9, 2.4, 2.2), roughness: 0.6 };
+
+    let mut open = room(false);
+    open.objects.remove(5);
+    open.objects.remove(1);
+    let sky = (0..32).map(|k| [0.2 + (k % 8) as f32 * 0.3, 0.5, 2.0 - (k / 8) as f32 * 0.4]).collect();
+    open.images = vec![PixelImage { name: "sky".to_owned(), width: 8, height: 4, pixels: Pixels::Float(sky) }];
+    open.environment = Some(EnvironmentDesc {
+        radiance: Vec3::ONE,
+        image: Some(ImageId(0)),
+        degrees: 40.0,
+        location: Location::default(),
+    });
+
+    let mut many = room(false);
+    many.objects.remove(5);
+    many.materials[3] = light(Vec3::splat(60.0));
+    many.objects.extend((0..60).map(|k| {
+        let [x, y, z, _] = lightcuts_kernel::rng::random4(k, 0, 0, 4);
+        let center = Vec3::new(0.1 + 0.8 * x, 0.65 + 0.3 * y, 0.1 + 0.8 * z);
+        object(PhysicalShape::Sphere { center, radius: 0.012 }, 3)
+    }));
+    vec![
+        ("open", room(false)),
+        ("occluded", room(true)),
+        ("textured", textured),
+        ("glossy", glossy),
+        ("sky", open),
+        ("many lamps", many),
+    ]
+}
+
+/// A scene `k` times as large, in every length.
+pub(super) fn scaled(scene: &PhysicalScene, k: f32) -> PhysicalScene {
+    let mut large = scene.clone();
+    large.camera.position *= k;
+    for object in &mut large.objects {
+        match &mut object.shape {
+            PhysicalShape::Sphere { center, radius } => (*center, *radius) = (*center * k, *radius * k),
+            PhysicalShape::Rectangle { center, width, height, .. } => {
+                (*center, *width, *height) = (*center * k, *width * k, *height * k);
+            }
+            PhysicalShape::Mesh { placement, .. } => *placement = Affine3A::from_scale(Vec3::splat(k)) * *placement,
+        }
+    }
+    large
+}

@@ -1,0 +1,42 @@
+//! How a picture is shown.
+
+use lightcuts_image::{GlobalToneMapping, LocalToneMapping, ToneMapping, Transfer};
+use serde::{Deserialize, Serialize};
+
+/// From linear light to displayed values; for PNG only.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Display {
+    /// Tone mapping operator.
+    pub tone_mapping: ToneMappingKind,
+    /// Parameters of the global operator.
+    pub global: GlobalToneMapping,
+    /// Parameters of the local operator.
+    pub local: LocalToneMapping,
+    /// Transfer curve; the thesis shows values as they are.
+    pub transfer: Transfer,
+}
+
+/// Tone mapping operators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ToneMappingKind {
+    /// Values as they are.
+    #[default]
+    None,
+    /// The thesis' global operator.
+    Global,
+    /// Reinhard et al. 2002, local: the menu entry that the original left empty.
+    Local,
+}
+
+impl Display {
+    /// The chosen operator with its parameters.
+    pub fn operator(&self) -> ToneMapping {
+        match self.tone_mapping {
+            ToneMappingKind::None => ToneMapping::None,
+            ToneMappingKind::Global => ToneMapping::Global(self.global),
+            ToneMappingKind::Local => ToneMapping::Local(self.local),
+        }
+    }
+}
