@@ -105,7 +105,7 @@ impl Engine {
         };
         match vpls.strategy {
             // `stochastic` is of the physical model; settings with it are not rendered here.
-            Strategy::Lightcuts | Strategy::Stochastic => self.gather_cut(&params, layer, monitor)?,
+            Strategy::Lightcuts | Strategy::Stochastic | Strategy::Auto => self.gather_cut(&params, layer, monitor)?,
             Strategy::All | Strategy::LightcutsExhaustive => self.gather_all(&params, layer, monitor)?,
         }
         self.scale(layer, vpls.photons)

@@ -136,7 +136,7 @@ impl<'a> Shader<'a> {
         let visits = match vpls.strategy {
             Strategy::All => TreeVisits::default(),
             // `stochastic` is of the physical model; settings with it are not rendered here.
-            Strategy::Lightcuts | Strategy::Stochastic => {
+            Strategy::Lightcuts | Strategy::Stochastic | Strategy::Auto => {
                 select(tree, self.tracer.avx2, point, vpls.threshold, candidates)
             }
             Strategy::LightcutsExhaustive => select_exhaustively(tree, candidates),

@@ -35,6 +35,9 @@ pub(crate) struct AmbientOcclusionFlags {
 #[serde(rename_all = "kebab-case")]
 pub(crate) struct CausticsFlags {
     /// Shoot photons at mirrors and glass and gather them in the second pass [default: false]
+    ///
+    /// In the physical model: photons of all lights, anew in each pass, gathered in disks that shrink. The options below
+    /// do not matter there.
     #[arg(id = "caustics", long = "caustics", value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     enabled: Option<bool>,
     /// Spacing of the photons on the disk through a target's bounding sphere, in scene units [default: 1]

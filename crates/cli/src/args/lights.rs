@@ -42,8 +42,9 @@ pub(crate) struct GatherFlags {
     /// `lightcuts`: those whose relevance reaches --threshold, found through a bounded tree. `lightcuts-exhaustive`: the
     /// same ones, hence the same picture, found by testing every VPL; the plain version, to compare times with. `all`:
     /// every VPL, whatever its relevance; the picture to compare with. In the physical model: `lightcuts` (clusters by
-    /// error bound, Walter et al. 2005), `stochastic` (a few VPLs drawn down the tree), `all`.
-    #[arg(long = "gather", value_name = "STRATEGY", value_parser = ["all", "lightcuts", "lightcuts-exhaustive", "stochastic"])]
+    /// error bound, Walter et al. 2005), `stochastic` (a few VPLs drawn down the tree), `all`, and `auto`, which chooses
+    /// among these in each tile by measurement.
+    #[arg(long = "gather", value_name = "STRATEGY", value_parser = ["all", "lightcuts", "lightcuts-exhaustive", "stochastic", "auto"])]
     strategy: Option<String>,
     /// Least relevance of a chosen VPL; not for `--gather all` [default: the scene's, else 0.000001]
     ///

@@ -12,8 +12,10 @@ pub(crate) struct PhysicalFlags {
     ///
     /// `lightcuts`: direct light by sampling, indirect light from VPLs (fresh ones in each pass) through cuts by error
     /// bound; best where light comes around corners. `path`: path tracing, the reference; often the better one in open
-    /// scenes. Both converge to the same picture.
-    #[arg(long, value_name = "NAME", value_parser = ["lightcuts", "path"])]
+    /// scenes. `auto`: measures both in each tile of 16 x 16 pixels, gives time to the one that needs less of it for the
+    /// same noise, and weighs them by their variances; as times differ, so do two such pictures. All converge to the
+    /// same picture.
+    #[arg(long, value_name = "NAME", value_parser = ["lightcuts", "path", "auto"])]
     integrator: Option<String>,
     /// Stop after this time, such as 10s, 2m or 1.5h; 0 for no limit [default: 0]
     ///
@@ -45,6 +47,9 @@ pub(crate) struct PhysicalFlags {
     /// Give back by short rays what --clamp takes; false leaves corners too dark, for ever [default: true]
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     compensation: Option<bool>,
+    /// Keep VPLs by how much they bring to what the camera sees; false keeps all that light paths leave [default: true]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    rejection: Option<bool>,
     /// Factor on the lights of a thesis scene [default: 1]
     ///
     /// They have no falloff in the thesis' model; here they get intensities with which a surface at half the scene's

@@ -30,10 +30,15 @@ pub(crate) fn resolve(scene: &Settings, files: &[JobFile], flags: &SettingFlags)
 }
 
 /// Tables and keys that matter in the thesis' model of light only.
-const OF_THESIS: [&str; 9] = [
+const OF_THESIS: [&str; 14] = [
     "vpl",
     "ambient-occlusion",
-    "caustics",
+    "caustics.step",
+    "caustics.radius",
+    "caustics.min-photons",
+    "caustics.min-reflection",
+    "caustics.min-refraction",
+    "caustics.min-diffuse",
     "bloom",
     "gather.threshold",
     "run.max-depth",

@@ -46,9 +46,11 @@ fn folder() -> Folder {
 }
 
 #[test]
-fn both_integrators_render_a_scene_in_toml() {
+fn every_integrator_renders_a_scene_in_toml() {
     let folder = folder();
-    for (integrator, words) in [("path", "samples 3"), ("lightcuts", "in a cut")] {
+    for (integrator, words) in
+        [("path", "samples 3"), ("lightcuts", "in a cut"), ("auto", "samples"), ("path --caustics", "samples 3")]
+    {
         let options = format!("--integrator {integrator} --size 20x16 --samples 3 --progress none");
         let said = stdout(&folder.run(&format!("render ball.toml {options} -o a.exr -o a.png")).success());
         assert!(said.contains(words), "{said}");
@@ -95,9 +97,12 @@ fn scenes_of_the_thesis_can_be_rendered_with_it_and_not_the_other_way_round() {
         );
     }
     assert_eq!(folder.run("render scene.txt --gather stochastic").get_output().status.code(), Some(2));
-    for arguments in
-        ["ball.toml --caustics", "ball.toml --max-depth 3", "scene.txt --vpls 10", "scene.txt --integrator path"]
-    {
+    for arguments in [
+        "ball.toml --caustics-radius 2",
+        "ball.toml --max-depth 3",
+        "scene.txt --vpls 10",
+        "scene.txt --integrator path",
+    ] {
         let said = stderr(&folder.run(&format!("render {arguments}")).code(2));
         assert!(said.contains("has no meaning in the"), "{arguments}: {said}");
     }

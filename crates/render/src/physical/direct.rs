@@ -3,7 +3,7 @@
 use super::pass::Counts;
 use super::scene::{Interaction, Scene};
 use glam::Vec3;
-use lightcuts_kernel::bsdf::{GLOSSY, MATT, lobes_of};
+use lightcuts_kernel::bsdf::{GLOSSY, MATT, SPECULAR, lobes_of};
 use lightcuts_kernel::emitter::{Emitter, RECTANGLE_LIGHT, SPHERE_LIGHT, TRIANGLE_LIGHT, emitter_pdf, sample_emitter};
 use lightcuts_kernel::emitter_tree::{Lit, leaf_probability, sample_emitter_tree};
 use lightcuts_kernel::environment::{environment_pdf, environment_radiance, sample_environment};
@@ -38,18 +38,27 @@ pub(crate) struct Before {
     pub(crate) pdf: f32,
     /// Lights that were drawn there.
     pub(crate) lights: u32,
+    /// Whether photons bring what is met by chance behind a single direction.
+    pub(crate) is_mapped: bool,
 }
 
 impl Before {
     /// Weight of light that was met by chance, by the density with which it is drawn from where the path was before. Light that
-    /// the camera sees, or that comes from a single direction, cannot be drawn.
+    /// the camera sees, or that comes from a single direction, cannot be drawn; caustics that photons bring count nothing.
     pub(crate) fn weight(before: Option<&Self>, light_pdf: impl Fn(&Interaction) -> f32) -> f32 {
         match before {
             Some(before) if before.pdf > 0.0 => {
                 power_heuristic(before.pdf, light_pdf(&before.at) * before.lights as f32)
             }
+            Some(before) if before.is_mapped => 0.0,
             _ => 1.0,
         }
+    }
+
+    /// Whether photons bring the light behind single directions once a path went on by a lobe: such light is a caustic if the path
+    /// was spread at any vertex before.
+    pub(crate) fn maps(before: Option<&Self>, lobe: u32, has_photons: bool) -> bool {
+        has_photons && (lobe != SPECULAR || before.is_some_and(|before| before.is_mapped))
     }
 }
 

@@ -75,7 +75,7 @@ impl<'a> Receiver<'a> {
     }
 
     /// What a light sends.
-    fn light(&self, light: &VirtualLight, counts: &mut Counts) -> Vec3 {
+    pub(crate) fn light(&self, light: &VirtualLight, counts: &mut Counts) -> Vec3 {
         let sent = self.unshadowed(light);
         if sent == Vec3::ZERO {
             return sent;

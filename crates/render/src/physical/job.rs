@@ -1,32 +1,40 @@
-//! A render of the physical model: passes of one sample per pixel until there are enough, time is up, or noise is low.
+//! A render of the physical model: passes over the picture until there are enough samples, time is up, or noise is low.
 
+use super::caustics::CausticMap;
 use super::cluster_tree::ClusterTree;
 use super::emission::Origins;
-use super::integrator::Sampler;
 use super::lightcuts::Lightcuts;
-use super::pass::{Counts, SamplePass, SampledTile};
-use super::rendering::{Canvas, PhysicalRendering};
+use super::mixture::Mixture;
+use super::pass::{Counts, Extent, SamplePass, SampledTile, Task};
+use super::plan::Plan;
+use super::rejection::Rejection;
+use super::rendering::PhysicalRendering;
 use super::scene::Scene;
-use super::vpls::{VplSet, trace_vpls};
+use super::technique::Technique;
+use super::vpls::trace_vpls;
 use crate::cpu::Simd;
 use crate::device::processor_name;
-use crate::film::Tile;
 use crate::monitor::{Monitor, Stage};
-use crate::settings::{Integrator, Settings};
+use crate::settings::Settings;
 use crate::stats::{StationDevice, Stats, timed};
+use cpu_time::ProcessTime;
 use lightcuts_kernel::rng::stream;
+use lightcuts_kernel::virtual_light::VirtualLight;
 use lightcuts_world::PhysicalWorld;
 use rayon::prelude::*;
 use std::time::Instant;
-
-/// Edge of a tile in pixels.
-const TILE_SIZE: u32 = 16;
 
 /// Purposes of random numbers; each has its own stream.
 const SAMPLES: u32 = 16;
 const LIGHT_PATHS: u32 = 17;
 const REPRESENTATIVES: u32 = 18;
 const PILOT: u32 = 19;
+const PHOTONS: u32 = 20;
+const PLACES: u32 = 21;
+const PROBES: u32 = 22;
+
+/// Photons of a pass: one for each pixel, within these limits.
+const PHOTON_PATHS: [u32; 2] = [1 << 14, 1 << 20];
 
 /// Light paths by which the number of virtual lights per path is found.
 const PILOT_PATHS: u32 = 1024;
@@ -40,7 +48,9 @@ pub(crate) struct PhysicalJob<'a> {
     settings: &'a Settings,
     monitor: &'a dyn Monitor,
     origins: Option<Origins>,
-    canvas: Canvas,
+    rejection: Option<Rejection>,
+    mixture: Mixture,
+    plan: Plan,
     stats: Stats,
     counts: Counts,
     started: Instant,
@@ -52,12 +62,16 @@ pub(crate) struct PhysicalJob<'a> {
 impl<'a> PhysicalJob<'a> {
     pub(crate) fn new(world: &'a PhysicalWorld, settings: &'a Settings, simd: Simd, monitor: &'a dyn Monitor) -> Self {
         let scene = Scene::new(world, simd);
+        let techniques = Technique::of(settings);
+        let mixture = Mixture::new(settings.image.width, settings.image.height, techniques.len());
         Self {
             scene,
             settings,
             monitor,
             origins: Origins::new(&scene),
-            canvas: Canvas::new(settings.image.width, settings.image.height),
+            rejection: None,
+            plan: Plan::new(techniques, mixture.tiles().len()),
+            mixture,
             stats: Stats::default(),
             counts: Counts::default(),
             started: Instant::now(),
@@ -67,137 +81,189 @@ impl<'a> PhysicalJob<'a> {
     }
 
     pub(crate) fn run(mut self) -> PhysicalRendering {
-        let tiles = Tile::cover(self.settings.image.width, self.settings.image.height, TILE_SIZE);
-        let physical = &self.settings.physical;
-        let steps = Steps::new(physical.time_limit, u64::from(self.settings.sampling.samples) * tiles.len() as u64);
+        let tiles = self.mixture.tiles().len() as u64;
+        let steps = Steps::new(self.settings.physical.time_limit, u64::from(self.settings.sampling.samples) * tiles);
         self.monitor.begin(Stage::Samples, steps.total);
         let mut passes = std::mem::take(&mut self.stats.passes);
-        timed(&mut passes, Stage::Samples, || self.run_passes(&tiles, &steps));
+        timed(&mut passes, Stage::Samples, || self.run_passes(&steps));
         self.stats.passes = passes;
         self.monitor.end();
         self.finish()
     }
 
-    fn run_passes(&mut self, tiles: &[Tile], steps: &Steps) {
-        let physical = &self.settings.physical;
-        let uses_vpls = physical.integrator == Integrator::Lightcuts;
+    fn run_passes(&mut self, steps: &Steps) {
+        let uses_vpls = self.plan.techniques().iter().any(|technique| technique.uses_vpls());
         if uses_vpls {
-            self.measure_lights_per_path();
+            self.prepare_vpls();
         }
-        let mut references = if uses_vpls { self.pilot(tiles) } else { Vec::new() };
+        // What cuts go by until there is a pass; a first pass of path tracing brings it by itself.
+        let pilot = if self.plan.techniques()[0].uses_vpls() { self.pilot() } else { Vec::new() };
         self.stats.complete = true;
-        for sample in 0..self.settings.sampling.samples {
-            let vpls = if uses_vpls { self.trace_vpls(sample) } else { VplSet::default() };
-            let tree = ClusterTree::build(&vpls.lights, self.stream(REPRESENTATIVES, sample));
-            let sampler = if uses_vpls {
-                let clamp = physical.clamp * self.diagonal();
-                let strategy = self.settings.gather.strategy;
-                Sampler::Lightcuts(Lightcuts { tree, settings: physical, strategy, clamp, references: &references })
-            } else {
-                Sampler::Path
-            };
-            let is_whole = self.run_pass(tiles, sample, sampler, steps);
-            if !is_whole {
+        let wanted = u64::from(self.settings.sampling.samples) * self.mixture.tiles().len() as u64;
+        let mut taken = 0;
+        for pass in 0.. {
+            let tasks = self.plan.tasks(&self.mixture, pass);
+            taken += tasks.iter().map(|task| u64::from(task.extent.samples())).sum::<u64>();
+            if !self.run_pass(pass, &tasks, &pilot, steps) {
                 // Time that was asked for and is up completes a render.
                 self.stats.complete = !self.monitor.cancelled();
                 return;
             }
-            let is_time_to_look = (sample + 1).is_multiple_of(NOISE_INTERVAL);
-            if is_time_to_look && physical.noise > 0.0 && self.canvas.noise() <= f64::from(physical.noise) {
+            if taken >= wanted {
                 return;
             }
-            if uses_vpls {
-                references = self.canvas.references();
+            self.mixture.learn();
+            let noise = self.settings.physical.noise;
+            let is_time_to_look = (pass + 1).is_multiple_of(NOISE_INTERVAL);
+            if is_time_to_look && noise > 0.0 && self.mixture.noise() <= f64::from(noise) {
+                return;
             }
         }
     }
 
-    fn diagonal(&self) -> f32 {
+    /// Distance below which a virtual light's contribution no longer grows, in scene units.
+    fn clamp(&self) -> f32 {
         let (lower, upper) = self.scene.world.bounds;
-        (upper - lower).length()
+        self.settings.physical.clamp * (upper - lower).length()
     }
 
     fn stream(&self, purpose: u32, pass: u32) -> u32 {
         stream(stream(self.settings.run.seed, purpose), pass)
     }
 
-    /// One sample of every pixel; returns whether it came to its end.
-    fn run_pass(&mut self, tiles: &[Tile], sample: u32, sampler: Sampler<'_>, steps: &Steps) -> bool {
-        let image = self.settings.image;
-        let pass = SamplePass {
-            scene: self.scene,
-            lens: self.scene.world.lens(image.width, image.height),
-            filter: &self.settings.filter,
-            stream: stream(self.settings.run.seed, SAMPLES),
-            sample,
-            sampler,
-        };
-        let (monitor, started) = (self.monitor, self.started);
+    /// One pass; returns whether it came to its end.
+    fn run_pass(&mut self, pass: u32, tasks: &[Task], pilot: &[f32], steps: &Steps) -> bool {
+        let techniques = self.plan.techniques().to_vec();
+        let tree = tasks.iter().any(|task| techniques[task.technique].uses_vpls()).then(|| self.make_tree(pass));
+        let caustics = self.shoot_photons(pass);
+        let references = if pass == 0 { pilot } else { self.mixture.references() };
+        let clamp = self.clamp();
+        let vpls = tree.map(|tree| Lightcuts { tree, settings: &self.settings.physical, clamp, references });
+        let samples = stream(self.settings.run.seed, SAMPLES);
+        let probes = [0, 1].map(|half| self.stream(PROBES, half));
+        let sample_pass = self.sample_pass(vpls, caustics);
+        let (monitor, started, mixture) = (self.monitor, self.started, &self.mixture);
         let limit = self.settings.physical.time_limit;
         // The first pass is finished whatever time it takes: a picture has no holes.
-        let is_up = || sample > 0 && limit > 0.0 && started.elapsed().as_secs_f32() >= limit;
-        let results: Vec<Option<SampledTile>> = tiles
+        let is_up = || pass > 0 && limit > 0.0 && started.elapsed().as_secs_f32() >= limit;
+        let results: Vec<Option<SampledTile>> = tasks
             .par_iter()
-            .map(|tile| {
-                let rendered = (!monitor.cancelled() && !is_up()).then(|| pass.render(tile));
-                steps.advance(monitor, started);
+            .map(|&task| {
+                let place = (techniques[task.technique], mixture.part(task.technique, task.half));
+                let tile = &mixture.tiles()[task.tile];
+                let stream = if task.extent.samples() > 0 { samples } else { probes[task.half] };
+                let rendered = (!monitor.cancelled() && !is_up())
+                    .then(|| sample_pass.render(task, tile, place.0, place.1, stream));
+                (0..task.extent.samples()).for_each(|_| steps.advance(monitor, started));
                 rendered
             })
             .collect();
         let is_whole = results.iter().all(Option::is_some);
-        for tile in results.iter().flatten() {
-            self.canvas.add(tile);
-            self.counts.add(&tile.counts);
+        for sampled in results.iter().flatten() {
+            self.mixture.add(sampled);
+            self.plan.learn(sampled);
+            self.counts.add(&sampled.counts);
         }
         is_whole
     }
 
-    /// What pixels are about as bright as, before the first pass: a traced path for each, over blocks.
-    fn pilot(&self, tiles: &[Tile]) -> Vec<f32> {
+    fn sample_pass<'b>(&'b self, vpls: Option<Lightcuts<'b>>, caustics: Option<CausticMap>) -> SamplePass<'b> {
         let image = self.settings.image;
-        let pass = SamplePass {
+        SamplePass {
             scene: self.scene,
             lens: self.scene.world.lens(image.width, image.height),
             filter: &self.settings.filter,
-            stream: stream(self.settings.run.seed, PILOT),
-            sample: 0,
-            sampler: Sampler::Path,
-        };
-        let mut canvas = Canvas::new(image.width, image.height);
-        let monitor = self.monitor;
-        let results: Vec<Option<SampledTile>> =
-            tiles.par_iter().map(|tile| (!monitor.cancelled()).then(|| pass.render(tile))).collect();
-        results.iter().flatten().for_each(|tile| canvas.add(tile));
-        canvas.references()
-    }
-
-    fn measure_lights_per_path(&mut self) {
-        if let Some(origins) = &self.origins {
-            let set = trace_vpls(&self.scene, origins, PILOT_PATHS, stream(self.settings.run.seed, LIGHT_PATHS));
-            self.count_lights(PILOT_PATHS, &set);
+            vpls,
+            caustics,
         }
     }
 
-    fn count_lights(&mut self, paths: u32, set: &VplSet) {
-        self.paths += u64::from(paths);
-        self.lights += set.lights.len() as u64;
-        self.stats.rays.photon += set.rays;
+    /// The photons of a pass, where caustics are asked for.
+    fn shoot_photons(&mut self, pass: u32) -> Option<CausticMap> {
+        let origins = self.origins.as_ref().filter(|_| self.settings.caustics.enabled)?;
+        let image = self.settings.image;
+        let paths = image.width.saturating_mul(image.height).clamp(PHOTON_PATHS[0], PHOTON_PATHS[1]);
+        let map = CausticMap::shoot(&self.scene, origins, paths, self.stream(PHOTONS, pass), pass);
+        self.stats.rays.photon += map.rays();
+        self.stats.photons_stored += map.photons() as u64;
+        Some(map)
+    }
+
+    /// What pixels are about as bright as, before the first pass: a traced path for each, over blocks.
+    fn pilot(&self) -> Vec<f32> {
+        let image = self.settings.image;
+        let mut mixture = Mixture::new(image.width, image.height, 1);
+        let pass = self.sample_pass(None, None);
+        let stream = stream(self.settings.run.seed, PILOT);
+        let (monitor, part) = (self.monitor, mixture.part(0, 0));
+        let results: Vec<Option<SampledTile>> = (0..mixture.tiles().len())
+            .into_par_iter()
+            .map(|tile| {
+                let task = Task { tile, technique: 0, half: 0, extent: Extent::Whole(1) };
+                let tile = &mixture.tiles()[tile];
+                (!monitor.cancelled()).then(|| pass.render(task, tile, Technique::Path, part, stream))
+            })
+            .collect();
+        results.iter().flatten().for_each(|sampled| mixture.add(sampled));
+        mixture.learn();
+        mixture.references().to_vec()
+    }
+
+    /// Virtual lights of a pass and the tree over them.
+    fn make_tree(&mut self, pass: u32) -> ClusterTree {
+        let clock = ProcessTime::try_now().ok();
+        let vpls = self.trace_vpls(pass);
+        let tree = ClusterTree::build(&vpls, self.stream(REPRESENTATIVES, pass));
+        let seconds = clock.and_then(|start| start.try_elapsed().ok()).map_or(0.0, |time| time.as_secs_f64());
+        let image = self.settings.image;
+        self.plan.learn_vpls(seconds, image.width as usize * image.height as usize);
+        tree
+    }
+
+    /// What light paths leave, before any pass: how many virtual lights, and how much they bring.
+    fn prepare_vpls(&mut self) {
+        let Some(origins) = &self.origins else { return };
+        let image = self.settings.image;
+        if self.settings.physical.rejection {
+            let lens = self.scene.world.lens(image.width, image.height);
+            let clamp = self.clamp();
+            self.rejection = Some(Rejection::new(&self.scene, &lens, self.stream(PLACES, 0), clamp));
+        }
+        let stream = stream(self.settings.run.seed, LIGHT_PATHS);
+        // Twice: the second time lights are kept as they will be.
+        for _ in 0..2 {
+            let left = trace_vpls(&self.scene, origins, self.rejection.as_ref(), PILOT_PATHS, stream);
+            self.paths = u64::from(PILOT_PATHS);
+            self.lights = left.items.iter().filter(|judged| judged.light.is_some()).count() as u64;
+            self.stats.rays.photon += left.rays;
+            if let Some(rejection) = &mut self.rejection {
+                rejection.learn(&left.items);
+            }
+        }
     }
 
     /// Virtual lights of a pass. Their number is about what is wanted, by the experience of earlier passes; the number of paths
     /// is fixed before they are traced.
-    fn trace_vpls(&mut self, sample: u32) -> VplSet {
-        let Some(origins) = &self.origins else { return VplSet::default() };
+    fn trace_vpls(&mut self, sample: u32) -> Vec<VirtualLight> {
+        let Some(origins) = &self.origins else { return Vec::new() };
         let lights_per_path = self.lights as f64 / self.paths.max(1) as f64;
         let wanted = f64::from(self.settings.physical.vpls) / lights_per_path.max(1e-3);
         let paths = (wanted as u32).clamp(1, self.settings.physical.vpls.saturating_mul(8));
-        let set = trace_vpls(&self.scene, origins, paths, self.stream(LIGHT_PATHS, sample));
-        self.stats.vpl_count = set.lights.len() as u64;
-        self.count_lights(paths, &set);
-        set
+        let stream = self.stream(LIGHT_PATHS, sample);
+        let left = trace_vpls(&self.scene, origins, self.rejection.as_ref(), paths, stream);
+        let lights: Vec<VirtualLight> = left.items.iter().filter_map(|judged| judged.light).collect();
+        if let Some(rejection) = &mut self.rejection {
+            rejection.learn(&left.items);
+        }
+        self.paths += u64::from(paths);
+        self.lights += lights.len() as u64;
+        self.stats.rays.photon += left.rays;
+        self.stats.vpl_count = lights.len() as u64;
+        lights
     }
 
     fn finish(mut self) -> PhysicalRendering {
+        self.mixture.learn();
         let stats = &mut self.stats;
         stats.rays.primary = self.counts.primary;
         stats.rays.secondary = self.counts.bounces;
@@ -210,7 +276,7 @@ impl<'a> PhysicalJob<'a> {
         stats.total_cpu_s = stats.passes.iter().map(|pass| pass.cpu_s).sum();
         stats.devices =
             vec![StationDevice { station: "gather".to_owned(), kind: "cpu".to_owned(), name: processor_name() }];
-        self.canvas.develop(self.stats)
+        self.mixture.develop(self.stats)
     }
 }
 

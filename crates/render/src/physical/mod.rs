@@ -1,17 +1,22 @@
 //! The physical model: path tracing, and indirect light from virtual point lights through error-bounded cuts.
 
+mod caustics;
 mod cluster_tree;
 mod direct;
 mod emission;
 mod gather;
-mod integrator;
 mod job;
+mod light_path;
 mod lightcuts;
+mod mixture;
 mod pass;
 mod path;
+mod plan;
 mod randoms;
+mod rejection;
 mod rendering;
 mod scene;
+mod technique;
 #[cfg(test)]
 mod tests;
 mod vpls;

@@ -1,17 +1,23 @@
-//! One pass over the picture: a sample of every pixel.
+//! One pass over the picture: samples of its tiles.
 
-use super::integrator::Sampler;
+use super::caustics::CausticMap;
+use super::lightcuts::Lightcuts;
+use super::mixture::Part;
 use super::path::Radiance;
 use super::randoms::Randoms;
 use super::scene::{Cone, Interaction, Scene};
+use super::technique::Technique;
 use crate::film::{Film, Tile};
 use crate::settings::Filter;
+use cpu_time::ThreadTime;
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{CONDUCTOR, DIELECTRIC, MIRROR, PHONG};
 use lightcuts_kernel::cluster::light_power;
 use lightcuts_kernel::fresnel::fresnel_conductor;
 use lightcuts_kernel::lens::{Lens, lens_ray, pixel_spread, pixel_width};
 use lightcuts_kernel::ray::Ray;
+use lightcuts_kernel::rng::random4;
+use std::time::Instant;
 
 /// Rays by kind, and what was gathered.
 #[derive(Debug, Clone, Copy, Default)]
@@ -63,17 +69,16 @@ impl FirstHit {
     }
 }
 
-/// Sums over the samples of a pixel.
+/// Sums over the samples of a pixel, of what is the same for all techniques.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct PixelSums {
     pub(crate) samples: u32,
     /// Samples that hit something.
     pub(crate) hits: u32,
-    /// Of the brightness (r + g + b) / 3 and of its square.
-    pub(crate) brightness: f64,
-    pub(crate) brightness_sq: f64,
     /// Of what was scattered at least once, as sums of channels.
     pub(crate) reflected: f64,
+    /// Of what was not, as sums of channels.
+    pub(crate) emitted: f64,
     pub(crate) albedo: Vec3,
     pub(crate) normal: Vec3,
     pub(crate) position: Vec3,
@@ -84,15 +89,16 @@ pub(crate) struct PixelSums {
     /// Of the cuts: sizes, and bounds of their errors.
     pub(crate) cut: f32,
     pub(crate) bound: f32,
+    /// Samples that have a cut.
+    pub(crate) cuts: u32,
 }
 
 impl PixelSums {
     pub(crate) fn add(&mut self, other: &Self) {
         self.samples += other.samples;
         self.hits += other.hits;
-        self.brightness += other.brightness;
-        self.brightness_sq += other.brightness_sq;
         self.reflected += other.reflected;
+        self.emitted += other.emitted;
         self.albedo += other.albedo;
         self.normal += other.normal;
         self.position += other.position;
@@ -102,6 +108,7 @@ impl PixelSums {
         }
         self.cut += other.cut;
         self.bound += other.bound;
+        self.cuts += other.cuts;
     }
 
     fn see(&mut self, first: &FirstHit) {
@@ -116,25 +123,104 @@ impl PixelSums {
     }
 }
 
+/// Sums over the samples that a pixel got from one technique, of their brightness (r + g + b) / 3.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Moments {
+    pub(crate) samples: u32,
+    pub(crate) sum: f64,
+    pub(crate) sum_sq: f64,
+}
+
+impl Moments {
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.samples += other.samples;
+        self.sum += other.sum;
+        self.sum_sq += other.sum_sq;
+    }
+
+    pub(crate) fn mean(&self) -> f64 {
+        self.sum / f64::from(self.samples.max(1))
+    }
+
+    /// Sum of squared differences from the mean.
+    pub(crate) fn spread(&self) -> f64 {
+        (self.sum_sq - self.sum * self.mean()).max(0.0)
+    }
+
+    /// Variance of the mean, as if samples were independent; 0 with fewer than two.
+    pub(crate) fn variance_of_mean(&self) -> f64 {
+        let n = f64::from(self.samples);
+        if self.samples < 2 { 0.0 } else { self.spread() / (n * (n - 1.0)) }
+    }
+}
+
+/// What a tile is to get in a pass.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Task {
+    /// Number of the tile.
+    pub(crate) tile: usize,
+    /// Number of the technique.
+    pub(crate) technique: usize,
+    /// The half that the samples go into.
+    pub(crate) half: usize,
+    pub(crate) extent: Extent,
+}
+
+/// How many samples a tile gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// So many of every pixel.
+    Whole(u32),
+    /// One of each of a few pixels, to learn how a technique does; with the number of the probe.
+    Probe(u32),
+}
+
+impl Extent {
+    /// Samples of every pixel.
+    pub(crate) fn samples(self) -> u32 {
+        match self {
+            Self::Whole(samples) => samples,
+            Self::Probe(_) => 0,
+        }
+    }
+}
+
+/// Pixels of a probe: one in each cell of a grid over the tile.
+const PROBE_GRID: [u32; 2] = [4, 2];
+
+/// Their number, at most.
+pub(crate) const PROBED_PIXELS: usize = (PROBE_GRID[0] * PROBE_GRID[1]) as usize;
+
 /// What a pass is: everything that its samples share.
 pub(crate) struct SamplePass<'a> {
     pub(crate) scene: Scene<'a>,
     pub(crate) lens: Lens,
     pub(crate) filter: &'a Filter,
-    pub(crate) stream: u32,
-    /// Number of the sample that every pixel gets.
-    pub(crate) sample: u32,
-    pub(crate) sampler: Sampler<'a>,
+    pub(crate) vpls: Option<Lightcuts<'a>>,
+    /// Photons, if they are to bring caustics.
+    pub(crate) caustics: Option<CausticMap>,
 }
 
-/// What a tile of a pass yields.
+/// Which random numbers a task gets.
+#[derive(Clone, Copy)]
+struct Points<'a> {
+    /// What the samples are added to; none of probes.
+    part: Option<Part<'a>>,
+    first: u32,
+    stream: u32,
+}
+
+/// What a task yields.
 pub(crate) struct SampledTile {
-    pub(crate) tile: Tile,
+    pub(crate) task: Task,
     pub(crate) all: Film,
     pub(crate) indirect: Film,
     /// Bottom row first.
     pub(crate) pixels: Vec<PixelSums>,
+    pub(crate) moments: Vec<Moments>,
     pub(crate) counts: Counts,
+    /// Processor time that it took.
+    pub(crate) seconds: f64,
 }
 
 /// What a camera ray brings.
@@ -146,48 +232,112 @@ pub(crate) struct Sampled {
 }
 
 impl SamplePass<'_> {
-    pub(crate) fn render(&self, tile: &Tile) -> SampledTile {
+    /// Takes the samples of a task with random numbers of a stream; `part` is what those before went into.
+    pub(crate) fn render(
+        &self,
+        task: Task,
+        tile: &Tile,
+        technique: Technique,
+        part: Part<'_>,
+        stream: u32,
+    ) -> SampledTile {
+        let clock = ThreadClock::start();
+        let points = match task.extent {
+            Extent::Whole(_) => Points { part: Some(part), first: 0, stream: part.stream(stream) },
+            // Techniques are compared by the same points: what any of them would see counts for all.
+            Extent::Probe(number) => Points { part: None, first: number, stream },
+        };
         let film = Film::around(tile, self.filter);
+        let area = (tile.width * tile.height) as usize;
         let mut result = SampledTile {
-            tile: *tile,
+            task,
             all: film.clone(),
             indirect: film,
-            pixels: Vec::with_capacity((tile.width * tile.height) as usize),
+            pixels: vec![PixelSums::default(); area],
+            moments: vec![Moments::default(); area],
             counts: Counts::default(),
+            seconds: 0.0,
         };
-        for (i, j) in tile.pixels() {
-            let sums = self.sample_pixel(i, j, &mut result);
-            result.pixels.push(sums);
+        match task.extent {
+            Extent::Whole(samples) => {
+                for (k, place) in tile.pixels().enumerate() {
+                    (0..samples).for_each(|_| self.sample_pixel(k, place, technique, points, &mut result));
+                }
+            }
+            Extent::Probe(_) => {
+                for (k, place) in probed(tile) {
+                    self.sample_pixel(k, place, technique, points, &mut result);
+                }
+            }
         }
+        result.seconds = clock.seconds();
         result
     }
 
-    fn sample_pixel(&self, i: u32, j: u32, result: &mut SampledTile) -> PixelSums {
+    fn sample_pixel(
+        &self,
+        k: usize,
+        (i, j): (u32, u32),
+        technique: Technique,
+        points: Points<'_>,
+        result: &mut SampledTile,
+    ) {
         let pixel = j * self.lens.width + i;
-        let mut randoms = Randoms::new(pixel, self.sample, self.stream);
+        let before = points.part.map_or(points.first, |part| part.samples_before(pixel));
+        let number = before + result.moments[k].samples;
+        let mut randoms = Randoms::new(pixel, number, points.stream);
         let [x, y, u, v] = randoms.next();
         let place = [i as f32 + x, j as f32 + y];
         let ray = lens_ray(&self.lens, place, [u, v]);
         let cone = Cone { width: pixel_width(&self.lens), spread: pixel_spread(&self.lens) };
         result.counts.primary += 1;
-        let sampled = self.sampler.sample(&self.scene, ray, cone, pixel, &mut randoms, &mut result.counts);
+        let sampled = technique.sample(self, ray, cone, pixel, &mut randoms, &mut result.counts);
         let Sampled { radiance, first, cut, bound } = sampled;
         let shift = [x - 0.5, y - 0.5];
         result.all.add(self.filter, i, j, shift, radiance.all);
         result.indirect.add(self.filter, i, j, shift, radiance.indirect);
-        let brightness = f64::from(radiance.all.x + radiance.all.y + radiance.all.z) / 3.0;
-        let mut sums = PixelSums {
-            samples: 1,
-            brightness,
-            brightness_sq: brightness * brightness,
-            reflected: f64::from(light_power(radiance.all - radiance.emitted)),
-            cut,
-            bound,
-            ..PixelSums::default()
-        };
+        let brightness = f64::from(light_power(radiance.all)) / 3.0;
+        result.moments[k].add(&Moments { samples: 1, sum: brightness, sum_sq: brightness * brightness });
+        let emitted = f64::from(light_power(radiance.emitted));
+        let reflected = f64::from(light_power(radiance.all)) - emitted;
+        let cuts = u32::from(technique.uses_vpls());
+        let mut sums = PixelSums { samples: 1, reflected, emitted, cut, bound, cuts, ..PixelSums::default() };
         if let Some(first) = &first {
             sums.see(first);
         }
-        sums
+        result.pixels[k].add(&sums);
+    }
+}
+
+/// The pixels of a probe, each with its place in the tile: always the same ones, so that their samples can be compared.
+pub(crate) fn probed(tile: &Tile) -> impl Iterator<Item = (usize, (u32, u32))> {
+    let Tile { i, j, width, height } = *tile;
+    let [columns, rows] = PROBE_GRID;
+    (0..columns * rows).filter_map(move |cell| {
+        let [u, v, ..] = random4(cell, 0, i, j);
+        let along = |length: u32, cells: u32, cell: u32, random: f32| {
+            let (first, end) = (length * cell / cells, length * (cell + 1) / cells);
+            (first < end).then(|| first + ((end - first) as f32 * random) as u32)
+        };
+        let column = along(width, columns, cell % columns, u)?;
+        let row = along(height, rows, cell / columns, v)?;
+        Some(((row * width + column) as usize, (i + column, j + row)))
+    })
+}
+
+/// A clock of the thread's own time, which other threads and programs do not stretch.
+struct ThreadClock {
+    own: Option<ThreadTime>,
+    elapsed: Instant,
+}
+
+impl ThreadClock {
+    fn start() -> Self {
+        Self { own: ThreadTime::try_now().ok(), elapsed: Instant::now() }
+    }
+
+    fn seconds(&self) -> f64 {
+        let own = self.own.and_then(|start| start.try_elapsed().ok());
+        own.unwrap_or_else(|| self.elapsed.elapsed()).as_secs_f64()
     }
 }

@@ -2,9 +2,9 @@
 //! (Veach 1997).
 
 use super::direct::{Before, DirectLight};
-use super::pass::{Counts, FirstHit};
+use super::pass::{Counts, FirstHit, SamplePass};
 use super::randoms::Randoms;
-use super::scene::{Cone, Interaction, Scene};
+use super::scene::{Cone, Interaction};
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{ALL_LOBES, SPECULAR, Transport};
 use lightcuts_kernel::ray::Ray;
@@ -17,12 +17,13 @@ pub(crate) const MAX_VERTICES: u32 = 4096;
 
 /// The radiance against a ray, what it first met, and how much light is indirect.
 pub(crate) fn trace_path(
-    scene: &Scene<'_>,
+    pass: &SamplePass<'_>,
     ray: Ray,
     cone: Cone,
     randoms: &mut Randoms,
     counts: &mut Counts,
 ) -> (Radiance, Option<FirstHit>) {
+    let SamplePass { scene, caustics, .. } = pass;
     let tables = &scene.world.tables[..];
     let (mut ray, mut cone) = (ray, cone);
     let mut throughput = Vec3::ONE;
@@ -47,6 +48,9 @@ pub(crate) fn trace_path(
         let direct = DirectLight { scene, at: &at, lobes: ALL_LOBES, lights: 1 };
         let direct = direct.estimate(|| [u, v, choice], counts, value);
         sum.add(vertex + 1, throughput * direct);
+        if let Some(caustics) = caustics {
+            sum.add(vertex + 2, throughput * caustics.gather(&at, value));
+        }
         let Some(sample) = at.sample(tables, ALL_LOBES, [r0, r1, r2], Transport::Radiance) else { break };
         throughput *= sample.weight;
         if vertex + 1 >= SURE_VERTICES {
@@ -61,7 +65,8 @@ pub(crate) fn trace_path(
         }
         // Behind a matt vertex textures are looked up at points, as light paths do.
         cone = if sample.lobe == SPECULAR { cone.after(hit.t) } else { Cone::NONE };
-        before = Some(Before { at, pdf: sample.pdf, lights: 1 });
+        let is_mapped = Before::maps(before.as_ref(), sample.lobe, caustics.is_some());
+        before = Some(Before { at, pdf: sample.pdf, lights: 1, is_mapped });
         ray = at.ray(sample.wi, f32::INFINITY);
         counts.bounces += 1;
     }

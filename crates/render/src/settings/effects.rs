@@ -33,7 +33,7 @@ impl AmbientOcclusion {
     }
 }
 
-/// Photon-mapped caustics of the second pass.
+/// Photon-mapped caustics of the second pass. In the physical model `enabled` alone matters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Caustics {

@@ -132,6 +132,8 @@ pub enum Strategy {
     LightcutsExhaustive,
     /// A few, drawn down the tree by what they may send (after Yuksel 2019). Physical model only.
     Stochastic,
+    /// Each tile those of the other strategies that measurement favours there. Physical model only.
+    Auto,
 }
 
 impl Settings {

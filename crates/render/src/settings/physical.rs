@@ -22,6 +22,8 @@ pub struct Physical {
     pub clamp: f32,
     /// Whether what the clamp takes is given back by short rays; without it corners stay too dark for ever.
     pub compensation: bool,
+    /// Whether VPLs are kept by how much they bring to what the camera sees.
+    pub rejection: bool,
     /// Factor on the lights of a thesis scene, which have no falloff and get intensities from the scene's size.
     pub light_scale: f32,
 }
@@ -37,6 +39,7 @@ impl Default for Physical {
             max_cut: 1000,
             clamp: 0.03,
             compensation: true,
+            rejection: true,
             light_scale: 1.0,
         }
     }
@@ -50,4 +53,6 @@ pub enum Integrator {
     Lightcuts,
     /// Path tracing: the reference.
     Path,
+    /// Each tile the one of both that measurement favours there.
+    Auto,
 }

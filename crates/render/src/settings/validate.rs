@@ -62,6 +62,7 @@ impl Settings {
         let (strategy, fits) = match self.gather.strategy {
             Strategy::LightcutsExhaustive => ("lightcuts-exhaustive", self.run.model == Model::Thesis),
             Strategy::Stochastic => ("stochastic", self.run.model == Model::Physical),
+            Strategy::Auto => ("auto", self.run.model == Model::Physical),
             Strategy::All | Strategy::Lightcuts => ("", true),
         };
         ensure("gather.strategy", strategy, fits, "one that this model of light has")?;

@@ -1,6 +1,6 @@
 //! Pictures of which every value is known.
 
-use super::scenes::{light, looking, matt, mean, object, point, rectangle, render, settings};
+use super::scenes::{light, looking, matt, mean, object, point, rectangle, render, settings, spot_down};
 use crate::settings::{Integrator, Strategy};
 use glam::Vec3;
 use lightcuts_scene::Location;
@@ -73,6 +73,40 @@ fn a_point_light_over_a_plane() {
         let exact = 10.0 * to_light.normalize().y / to_light.length_squared() * 0.5 / PI;
         assert!((found[0] / exact - 1.0).abs() < 1e-4, "{found:?} {exact}");
     }
+}
+
+/// A spot above a mirror lights a ceiling as its mirror image would; paths never find it, photons do.
+#[test]
+fn a_mirrored_spot() {
+    let scene = PhysicalScene {
+        camera: looking(Vec3::new(0.0, 0.9, 0.01), Vec3::Y * 2.0, 40.0),
+        objects: vec![
+            rectangle(Vec3::ZERO, Vec3::Y, Vec3::Z, 20.0, 20.0, 1),
+            // Dark, for the mirror sends its own light back to it.
+            rectangle(Vec3::Y * 2.0, Vec3::NEG_Y, Vec3::Z, 20.0, 20.0, 0),
+        ],
+        materials: vec![
+            matt(Vec3::splat(0.01)),
+            SurfaceDesc {
+                scattering: Scattering::Mirror { reflectance: Vec3::splat(0.9).into() },
+                ..SurfaceDesc::default()
+            },
+        ],
+        lights: vec![spot_down(Vec3::Y, Vec3::splat(10.0))],
+        ..PhysicalScene::default()
+    };
+    let mut settings = settings(Integrator::Path, 16, 64);
+    let dark = mean(&render(&scene, &settings));
+    settings.caustics.enabled = true;
+    let rendering = render(&scene, &settings);
+    let of = |at: &[f32; 3]| {
+        let to_light = Vec3::NEG_Y - Vec3::from(*at);
+        10.0 * 0.9 * -to_light.normalize().y / to_light.length_squared() * 0.01 / PI
+    };
+    let exact: f32 = rendering.position.pixels().iter().map(of).sum::<f32>() / 256.0;
+    let ratio = mean(&rendering).x as f32 / exact;
+    println!("without photons {:.4}, with them {ratio:.4} of {exact}", dark.x as f32 / exact);
+    assert!(dark.x == 0.0 && (ratio - 1.0).abs() < 0.02, "{dark} {ratio}");
 }
 
 /// What leaves one plate for the other is the form factor of two parallel unit squares at distance 1: 0.19982.

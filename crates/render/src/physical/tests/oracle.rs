@@ -12,6 +12,7 @@ use glam::Vec3;
 use lightcuts_kernel::bsdf::{MATT, lobes_of};
 use lightcuts_kernel::cluster::light_power;
 use lightcuts_kernel::lens::lens_ray;
+use lightcuts_kernel::virtual_light::VirtualLight;
 use lightcuts_world::PhysicalWorld;
 
 /// The oracle: at every pixel the sum over a cut is as near to the sum over all lights as it says, and equal for an error of 0.
@@ -21,8 +22,9 @@ fn every_cut_is_within_its_bound() {
         let world = PhysicalWorld::new(&room(occluded)).unwrap();
         let scene = Scene::new(&world, Simd::Auto);
         let origins = Origins::new(&scene).unwrap();
-        let set = trace_vpls(&scene, &origins, vpls, 3);
-        let tree = ClusterTree::build(&set.lights, 4);
+        let left = trace_vpls(&scene, &origins, None, vpls, 3);
+        let lights: Vec<VirtualLight> = left.items.iter().filter_map(|judged| judged.light).collect();
+        let tree = ClusterTree::build(&lights, 4);
         let size = if vpls > 1000 { 12 } else { 24 };
         let lens = world.lens(size, size);
         let (mut heap, mut counts) = (CutHeap::default(), Counts::default());

@@ -40,6 +40,13 @@ pub(super) fn point(position: Vec3, intensity: Vec3) -> EmitterDesc {
     EmitterDesc { kind: EmitterKind::Point { position, intensity }, location: Location::default() }
 }
 
+/// Shines down, evenly within 40 degrees.
+pub(super) fn spot_down(position: Vec3, intensity: Vec3) -> EmitterDesc {
+    let kind =
+        EmitterKind::Spot { position, direction: Vec3::NEG_Y, intensity, inner_degrees: 40.0, outer_degrees: 45.0 };
+    EmitterDesc { kind, location: Location::default() }
+}
+
 pub(super) fn looking(position: Vec3, target: Vec3, degrees: f32) -> PhysicalCamera {
     PhysicalCamera {
         position,
@@ -172,6 +179,19 @@ pub(super) fn variants() -> Vec<(&'static str, PhysicalScene)> {
         ("sky", open),
         ("many lamps", many),
     ]
+}
+
+/// The room with a glass ball, a mirror for a wall and a floor under a smooth coat.
+pub(super) fn caustic_room() -> PhysicalScene {
+    let mut scene = room(false);
+    scene.materials[4].scattering = Scattering::Dielectric { ior: 1.5, roughness: 0.0, transmittance: Vec3::ONE };
+    scene.materials[1].scattering = Scattering::Mirror { reflectance: Vec3::splat(0.8).into() };
+    scene.materials.push(SurfaceDesc {
+        scattering: Scattering::Plastic { albedo: Vec3::splat(0.6).into(), ior: 1.5, roughness: 0.0 },
+        ..SurfaceDesc::default()
+    });
+    scene.objects[0].material = SurfaceId(5);
+    scene
 }
 
 /// A scene `k` times as large, in every length.

@@ -1,0 +1,392 @@
+//! What a render has so far: sums for each technique, and the picture that they make together.
+//!
+//! Where several techniques show the same light, each tile weighs them by the inverse of their variances. If a variance came from
+//! the samples that it weighs, a rare bright sample would lower its own weight, and pictures would be too dark. So samples go
+//! into two halves by turns, and what is learnt from one half weighs, and chooses for, the other.
+
+use super::pass::{Extent, Moments, PROBED_PIXELS, PixelSums, SampledTile, Task, probed};
+use super::rendering::PhysicalRendering;
+use crate::film::{Film, Tile};
+use crate::stats::Stats;
+use glam::Vec3;
+use lightcuts_image::{Image, Plane};
+use lightcuts_kernel::rng::stream;
+use rayon::prelude::*;
+
+/// Edge of a tile in pixels.
+pub(crate) const TILE_SIZE: u32 = 16;
+
+/// Most canvases: two halves of four techniques.
+const MOST_CANVASES: usize = 8;
+
+/// Degrees of freedom that the whole picture has beside a tile's own in the estimate of a variance.
+const PICTURE_FREEDOM: f64 = 8.0;
+
+/// Brightness below which errors count no more, relative to the picture's mean.
+const DARK: f64 = 0.8;
+
+/// Samples that a tile's pixels must have in both halves to tell how good they are together, and what they are trusted to be at
+/// best, relative to independent ones.
+const LEAST_SHOWN: u32 = 4;
+const LEAST_GAIN: f64 = 0.1;
+
+/// Techniques with less weight than this are left out: what they would add is less than what a bright speck of theirs, of which the
+/// variance did not know, would spoil.
+const LEAST_WEIGHT: f64 = 0.1;
+
+/// Variances below this, relative to the pixels' squares, are taken as this.
+const LEAST_VARIANCE: f64 = 1e-9;
+
+/// Sums of one technique in one half.
+struct Canvas {
+    all: Film,
+    indirect: Film,
+    /// Bottom row first.
+    moments: Vec<Moments>,
+    /// Of each tile: samples of each of its pixels.
+    shown: Vec<u32>,
+    /// Of each tile: what probes found at its probed pixels. It is not shown: single pixels that differ from their tile would get much
+    /// weight from few samples.
+    probes: Vec<Vec<Moments>>,
+}
+
+/// What probes tell of a technique's variance, relative to the pixels' squares.
+#[derive(Clone, Copy, Default)]
+struct Known {
+    /// Sum of squared differences of samples from their pixel's mean, and degrees of freedom.
+    spread: f64,
+    freedom: f64,
+}
+
+impl Known {
+    fn with(self, other: &Self) -> Self {
+        Self { spread: self.spread + other.spread, freedom: self.freedom + other.freedom }
+    }
+
+    /// Variance of a sample, where that of the whole picture has a say.
+    fn variance(&self, all: &Self) -> Option<f64> {
+        let mean = all.spread / all.freedom;
+        let variance = (self.spread + mean * PICTURE_FREEDOM) / (self.freedom + PICTURE_FREEDOM);
+        (all.freedom > 0.0).then_some(variance.max(LEAST_VARIANCE))
+    }
+}
+
+/// Sums of all passes so far.
+pub(crate) struct Mixture {
+    width: usize,
+    height: usize,
+    tiles: Vec<Tile>,
+    halves: usize,
+    /// Bottom row first.
+    pixels: Vec<PixelSums>,
+    /// By technique and half; made when they are needed.
+    canvases: Vec<Option<Canvas>>,
+    /// Of each canvas and tile: variance of a sample, relative to the pixel's square; `None` where nothing is known.
+    variances: Vec<Vec<Option<f64>>>,
+    /// What the light of each pixel is, as a sum of channels. Empty before the first pass.
+    references: Vec<f32>,
+}
+
+/// A canvas to which samples are to be added.
+#[derive(Clone, Copy)]
+pub(crate) struct Part<'a> {
+    moments: Option<&'a [Moments]>,
+    /// Which canvas it is.
+    number: usize,
+}
+
+impl Part<'_> {
+    /// Samples that a pixel has already.
+    pub(crate) fn samples_before(&self, pixel: u32) -> u32 {
+        self.moments.map_or(0, |moments| moments[pixel as usize].samples)
+    }
+
+    /// Its own stream of random numbers: every other point of one sequence would be worse than a sequence.
+    pub(crate) fn stream(&self, all: u32) -> u32 {
+        if self.number == 0 { all } else { stream(all, self.number as u32) }
+    }
+}
+
+impl Mixture {
+    pub(crate) fn new(width: u32, height: u32, techniques: usize) -> Self {
+        let halves = if techniques > 1 { 2 } else { 1 };
+        let tiles = Tile::cover(width, height, TILE_SIZE);
+        let canvases = techniques * halves;
+        assert!(canvases <= MOST_CANVASES);
+        Self {
+            width: width as usize,
+            height: height as usize,
+            halves,
+            pixels: vec![PixelSums::default(); width as usize * height as usize],
+            canvases: (0..canvases).map(|_| None).collect(),
+            variances: vec![vec![None; tiles.len()]; canvases],
+            references: Vec::new(),
+            tiles,
+        }
+    }
+
+    pub(crate) fn tiles(&self) -> &[Tile] {
+        &self.tiles
+    }
+
+    /// The half into which the samples of a tile's turn go.
+    pub(crate) fn half_of(&self, turn: u32) -> usize {
+        turn as usize % self.halves
+    }
+
+    /// Where a technique's samples of a half go.
+    pub(crate) fn part(&self, technique: usize, half: usize) -> Part<'_> {
+        let number = technique * self.halves + half;
+        Part { moments: self.canvases[number].as_ref().map(|canvas| &canvas.moments[..]), number }
+    }
+
+    /// What the light of each pixel is, as a sum of channels; empty before the first pass.
+    pub(crate) fn references(&self) -> &[f32] {
+        &self.references
+    }
+
+    /// Adds a tile's samples.
+    pub(crate) fn add(&mut self, sampled: &SampledTile) {
+        let (width, height) = (self.width, self.height);
+        let tiles = self.tiles.len();
+        let Task { tile, technique, half, extent } = sampled.task;
+        let canvas = self.canvases[technique * self.halves + half].get_or_insert_with(|| Canvas {
+            all: Film::new(width as u32, height as u32),
+            indirect: Film::new(width as u32, height as u32),
+            moments: vec![Moments::default(); width * height],
+            shown: vec![0; tiles],
+            probes: vec![vec![Moments::default(); PROBED_PIXELS]; tiles],
+        });
+        let Extent::Whole(samples) = extent else {
+            for ((place, _), probe) in probed(&self.tiles[tile]).zip(&mut canvas.probes[tile]) {
+                probe.add(&sampled.moments[place]);
+            }
+            return;
+        };
+        canvas.all.merge(&sampled.all);
+        canvas.indirect.merge(&sampled.indirect);
+        canvas.shown[tile] += samples;
+        let places = self.tiles[tile].pixels().map(|(i, j)| j as usize * width + i as usize);
+        for ((place, sums), moments) in places.zip(&sampled.pixels).zip(&sampled.moments) {
+            self.pixels[place].add(sums);
+            canvas.moments[place].add(moments);
+        }
+    }
+
+    /// Takes stock after a pass: what pixels are like, and how much techniques vary.
+    pub(crate) fn learn(&mut self) {
+        self.references = self.smooth_light();
+        if self.halves > 1 {
+            let dark = self.dark();
+            for canvas in 0..self.canvases.len() {
+                let gain = self.gain(canvas / self.halves, dark);
+                self.variances[canvas] = self.tile_variances(self.canvases[canvas].as_ref(), gain, dark);
+            }
+        }
+    }
+
+    /// Variance of a technique's sample in a tile, relative to the pixel's square, from the other half than the one for which it is
+    /// asked.
+    pub(crate) fn variance_for(&self, technique: usize, half: usize, tile: usize) -> Option<f64> {
+        self.variances[technique * self.halves + self.halves - 1 - half][tile]
+    }
+
+    /// What the light of each pixel is, as a sum of channels: mean over the pixel's neighbourhood, of reflected light only, for a
+    /// light in the picture says nothing of its surroundings.
+    fn smooth_light(&self) -> Vec<f32> {
+        const REACH: usize = 2;
+        let (width, height) = (self.width, self.height);
+        let of_row = |j: usize| {
+            let rows = j.saturating_sub(REACH)..=(j + REACH).min(height - 1);
+            let smooth = move |i: usize| {
+                let (mut sum, mut samples) = (0.0, 0.0);
+                for row in rows.clone() {
+                    let columns = i.saturating_sub(REACH)..=(i + REACH).min(width - 1);
+                    for pixel in &self.pixels[row * width + columns.start()..=row * width + columns.end()] {
+                        sum += pixel.reflected;
+                        samples += f64::from(pixel.samples);
+                    }
+                }
+                if samples > 0.0 { (sum / samples) as f32 } else { 0.0 }
+            };
+            (0..width).map(smooth)
+        };
+        (0..height).into_par_iter().flat_map_iter(of_row).collect()
+    }
+
+    /// Square of the brightness below which errors count no more.
+    fn dark(&self) -> f64 {
+        let sum: f64 = self.references.iter().map(|&light| f64::from(light)).sum();
+        let mean = sum / (3.0 * self.references.len().max(1) as f64);
+        (mean * DARK).powi(2).max(f64::MIN_POSITIVE)
+    }
+
+    /// What a pixel's errors are measured by: the square of its brightness.
+    fn scale_sq(&self, pixel: usize, dark: f64) -> f64 {
+        let sums = &self.pixels[pixel];
+        let emitted = sums.emitted / f64::from(sums.samples.max(1));
+        let smooth = f64::from(self.references.get(pixel).copied().unwrap_or(0.0));
+        let own = sums.reflected / f64::from(sums.samples.max(1));
+        let brightness = (smooth.max(own) + emitted) / 3.0;
+        brightness * brightness + dark
+    }
+
+    /// What evenly spread points make of a technique's variance: errors of means, as both halves show them, relative to what the spread of
+    /// their samples lets expect. It takes many pixels to tell, so the whole picture has one; 1 where nothing is known.
+    fn gain(&self, technique: usize, dark: f64) -> f64 {
+        let of_half = |half: usize| self.canvases[technique * self.halves + half].as_ref();
+        let (Some(first), Some(second)) = (of_half(0), of_half(1)) else { return 1.0 };
+        let of_tile = |(number, tile): (usize, &Tile)| {
+            let shown = [first.shown[number], second.shown[number]];
+            if shown.into_iter().min() < Some(LEAST_SHOWN) {
+                return [0.0; 2];
+            }
+            tile.pixels().fold([0.0; 2], |[found, expected], (i, j)| {
+                let pixel = j as usize * self.width + i as usize;
+                let (a, b) = (&first.moments[pixel], &second.moments[pixel]);
+                let scale_sq = self.scale_sq(pixel, dark);
+                let difference = a.mean() - b.mean();
+                let of_means = a.variance_of_mean() + b.variance_of_mean();
+                [found + difference * difference / scale_sq, expected + of_means / scale_sq]
+            })
+        };
+        let sums: Vec<[f64; 2]> = self.tiles.par_iter().enumerate().map(of_tile).collect();
+        let [found, expected] = sums.iter().fold([0.0; 2], |sum, tile| [sum[0] + tile[0], sum[1] + tile[1]]);
+        if expected > 0.0 { (found / expected).clamp(LEAST_GAIN, 1.0) } else { 1.0 }
+    }
+
+    /// Variances of a canvas in all tiles.
+    fn tile_variances(&self, canvas: Option<&Canvas>, gain: f64, dark: f64) -> Vec<Option<f64>> {
+        let Some(canvas) = canvas else { return vec![None; self.tiles.len()] };
+        let of_tile = |(tile, probes): (&Tile, &Vec<Moments>)| {
+            probed(tile).zip(probes).fold(Known::default(), |known, ((_, (i, j)), moments)| {
+                let pixel = j as usize * self.width + i as usize;
+                let spread = moments.spread() / self.scale_sq(pixel, dark);
+                known.with(&Known { spread, freedom: f64::from(moments.samples.saturating_sub(1)) })
+            })
+        };
+        let own: Vec<Known> = self.tiles.iter().zip(&canvas.probes).map(of_tile).collect();
+        let all = own.iter().fold(Known::default(), |sum, known| sum.with(known));
+        own.iter().map(|own| own.variance(&all).map(|variance| variance * gain)).collect()
+    }
+
+    fn tile_of(&self, i: usize, j: usize) -> usize {
+        let size = TILE_SIZE as usize;
+        j / size * self.width.div_ceil(size) + i / size
+    }
+
+    /// Weights of the canvases in a tile. They sum to 1 if it has a sample.
+    fn weights(&self, tile: usize) -> [f64; MOST_CANVASES] {
+        let mut weights = [0.0; MOST_CANVASES];
+        if self.canvases.len() == 1 {
+            weights[0] = 1.0;
+            return weights;
+        }
+        let shown = |canvas: usize| self.canvases[canvas].as_ref().map_or(0.0, |canvas| f64::from(canvas.shown[tile]));
+        let techniques = self.canvases.len() / self.halves;
+        let mut sums = [0.0; 2];
+        for (half, sum) in sums.iter_mut().enumerate() {
+            let known = |technique| {
+                let variance = self.variance_for(technique, half, tile);
+                variance.map_or(0.0, |variance| shown(technique * self.halves + half) / variance)
+            };
+            // Before anything is known, samples count alike.
+            let is_known = (0..techniques).any(|technique| known(technique) > 0.0);
+            let weight = |technique| {
+                if is_known { known(technique) } else { shown(technique * self.halves + half) }
+            };
+            let all: f64 = (0..techniques).map(weight).sum();
+            for technique in (0..techniques).filter(|&technique| weight(technique) >= LEAST_WEIGHT * all) {
+                weights[technique * self.halves + half] = weight(technique);
+                *sum += weight(technique);
+            }
+        }
+        let halves_there = sums.iter().filter(|&&sum| sum > 0.0).count() as f64;
+        for (canvas, weight) in weights.iter_mut().enumerate() {
+            let sum = sums[canvas % self.halves];
+            *weight = if sum > 0.0 { *weight / (sum * halves_there) } else { 0.0 };
+        }
+        weights
+    }
+
+    /// Variance of a pixel's brightness.
+    fn variance(&self, i: usize, j: usize, dark: f64) -> f64 {
+        let (pixel, tile) = (j * self.width + i, self.tile_of(i, j));
+        let weights = self.weights(tile);
+        let of = |(part, (canvas, weight)): (&Option<Canvas>, (usize, f64))| {
+            let part = part.as_ref().filter(|_| weight > 0.0)?;
+            let moments = part.moments[pixel];
+            let of_sample = match moments.samples {
+                // A single sample says nothing: its tile does.
+                0 | 1 => self.variances[canvas][tile].map_or(0.0, |v| v * self.scale_sq(pixel, dark)),
+                n => moments.variance_of_mean() * f64::from(n),
+            };
+            Some(weight * weight * of_sample / f64::from(part.shown[tile].max(1)))
+        };
+        self.canvases.iter().zip(weights.into_iter().enumerate()).filter_map(of).sum()
+    }
+
+    /// Root mean square of the pixels' relative standard errors; of dark pixels relative to a hundredth of the mean.
+    pub(crate) fn noise(&self) -> f64 {
+        let count = self.pixels.len() as f64;
+        let brightness = |i, j| f64::from(self.mean(i, j, |canvas| &canvas.all).element_sum()) / 3.0;
+        let places = || (0..self.height).flat_map(|j| (0..self.width).map(move |i| (i, j)));
+        let floor = places().map(|(i, j)| brightness(i, j)).sum::<f64>() / count * 0.01;
+        let dark = self.dark();
+        let relative_sq = |(i, j)| {
+            let least = brightness(i, j).max(floor).powi(2).max(f64::MIN_POSITIVE);
+            self.variance(i, j, dark) / least
+        };
+        (places().map(relative_sq).sum::<f64>() / count).sqrt()
+    }
+
+    /// A pixel's colour on the films of all canvases together.
+    fn mean(&self, i: usize, j: usize, film: impl Fn(&Canvas) -> &Film) -> Vec3 {
+        let weights = self.weights(self.tile_of(i, j));
+        let of = |(canvas, weight): (&Option<Canvas>, f64)| {
+            canvas.as_ref().filter(|_| weight > 0.0).map(|canvas| film(canvas).mean(i, j) * weight as f32)
+        };
+        self.canvases.iter().zip(weights).filter_map(of).sum()
+    }
+
+    pub(crate) fn develop(self, stats: Stats) -> PhysicalRendering {
+        let beauty = self.image(|i, j| self.mean(i, j, |canvas| &canvas.all));
+        let indirect = self.image(|i, j| self.mean(i, j, |canvas| &canvas.indirect));
+        let direct =
+            self.image(|i, j| self.mean(i, j, |canvas| &canvas.all) - self.mean(i, j, |canvas| &canvas.indirect));
+        let over = |sum: Vec3, count: u32| if count == 0 { Vec3::ZERO } else { sum / count as f32 };
+        let mean = |sum: f32, count: u32| if count == 0 { 0.0 } else { sum / count as f32 };
+        let dark = self.dark();
+        PhysicalRendering {
+            beauty,
+            direct,
+            indirect,
+            albedo: self.image(|i, j| over(self.at(i, j).albedo, self.at(i, j).samples)),
+            normal: self.image(|i, j| over(self.at(i, j).normal, self.at(i, j).hits)),
+            position: self.image(|i, j| over(self.at(i, j).position, self.at(i, j).hits)),
+            depth: self.plane(|p| if p.hits == 0 { f32::INFINITY } else { p.depth / p.hits as f32 }),
+            object_id: self.plane(|p| p.object),
+            material_id: self.plane(|p| p.material),
+            samples: self.plane(|p| p.samples as f32),
+            variance: Plane::from_fn(self.width, self.height, |x, y| {
+                self.variance(x, self.height - 1 - y, dark) as f32
+            }),
+            cut_size: self.plane(|p| mean(p.cut, p.cuts)),
+            error_bound: self.plane(|p| mean(p.bound, p.cuts)),
+            stats,
+        }
+    }
+
+    fn at(&self, i: usize, j: usize) -> &PixelSums {
+        &self.pixels[j * self.width + i]
+    }
+
+    /// A picture from a function of (i, j), j from the bottom.
+    fn image(&self, color: impl Fn(usize, usize) -> Vec3) -> Image {
+        Image::from_fn(self.width, self.height, |x, y| color(x, self.height - 1 - y).to_array())
+    }
+
+    fn plane<T: Copy>(&self, value: impl Fn(&PixelSums) -> T) -> Plane<T> {
+        Plane::from_fn(self.width, self.height, |x, y| value(self.at(x, self.height - 1 - y)))
+    }
+}
