@@ -3,7 +3,7 @@
 //! Every result has one layout, so that a station's result can be made on one device and used on another: that is how a
 //! fault is isolated. A device either returns the whole result or a [`DeviceFault`]; it never returns a part of one.
 
-pub use crate::cpu::{CpuDevice, processor_name};
+pub use crate::cpu::{CpuDevice, Tracer, processor_name};
 pub use crate::film::{Film, Tile};
 pub use crate::light_tree::{LightTree, PackedTree, TreeLayout, position_bounds};
 pub use crate::occlusion::{Occlusion, SLOTS};

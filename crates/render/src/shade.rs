@@ -1,6 +1,6 @@
 //! Light at a hit: the scene's lights in the first pass, VPLs in the second.
 
-use crate::cpu::{Candidates, PacketStack, Receiver, Tracer, evaluate, select, select_exhaustively};
+use crate::cpu::{Candidates, Receiver, Tracer, evaluate, select, select_exhaustively};
 use crate::device::{Lighting, VplLighting};
 use crate::settings::Strategy;
 use crate::stats::{Rays, TreeVisits};
@@ -37,7 +37,6 @@ pub(crate) struct Shader<'a> {
     pub(crate) selected: Vec<u32>,
     /// VPLs of the current hit; those of every hit where all are gathered.
     candidates: Vec<Candidates>,
-    stack: PacketStack,
 }
 
 impl<'a> Shader<'a> {
@@ -55,7 +54,6 @@ impl<'a> Shader<'a> {
             visits: TreeVisits::default(),
             selected: Vec::new(),
             candidates,
-            stack: PacketStack::new(),
         }
     }
 
@@ -142,7 +140,7 @@ impl<'a> Shader<'a> {
             Strategy::LightcutsExhaustive => select_exhaustively(tree, candidates),
         };
         let receiver = Receiver { point, normal: surface.normal, diffuse: material.diffuse, epsilon: *epsilon };
-        let gathered = evaluate(&self.tracer, &tree.blocks, candidates, threshold, &receiver, &mut self.stack);
+        let gathered = evaluate(&self.tracer, &tree.blocks, candidates, threshold, &receiver);
         self.visits.add(&TreeVisits { shaded_hits: 1, selected: u64::from(gathered.chosen), ..visits });
         self.selected.push(gathered.chosen);
         self.rays.shadow += gathered.shadow_rays;

@@ -3,7 +3,6 @@
 //! The CPU device replaces [`closest_hit`] and [`any_hit`] by SIMD versions that are tested against these. Other devices
 //! traverse the compressed hierarchy of [`crate::CompressedHierarchy`].
 
-use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{
@@ -17,9 +16,15 @@ pub const LANES: usize = 8;
 /// Most entries that a traversal can have to remember: 7 per level of the deepest tree that the builder makes.
 pub const STACK_SIZE: usize = 512;
 
+/// Levels of the deepest tree that the builder makes.
+pub const MAX_LEVELS: usize = STACK_SIZE / (LANES - 1);
+
 /// Eight triangles, component by component: corner, two edges, primitive. Empty lanes have zero edges, which no ray hits.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+///
+/// Blocks and nodes begin where cache lines do: a ray waits for memory longer than it computes, and a block across one line
+/// more is one more to wait for.
+#[repr(C, align(64))]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TriangleBlock {
     /// First corners: x of all lanes, y of all lanes, z of all lanes.
     pub corner: [[f32; LANES]; 3],
@@ -49,15 +54,47 @@ impl TriangleBlock {
 }
 
 /// Eight children's boxes, component by component, rounded outwards. Empty children have inverted boxes.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C, align(64))]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BvhNode {
-    /// Lower corners: x of all children, y of all children, z of all children.
-    pub lower: [[f32; LANES]; 3],
-    /// Upper corners.
-    pub upper: [[f32; LANES]; 3],
+    /// Lower corners, then upper ones: of each x of all children, y of all children, z of all children.
+    pub bounds: [[[f32; LANES]; 3]; 2],
     /// The children, as [`ChildRef`]s.
     pub child: [u32; LANES],
+    /// Which children are blocks of triangles, a bit per lane.
+    pub triangles: u32,
+    /// Which children are spheres or squares, a bit per lane.
+    pub others: u32,
+}
+
+impl BvhNode {
+    /// A node without children.
+    pub const EMPTY: Self = Self {
+        bounds: [[[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]],
+        child: [u32::MAX; LANES],
+        triangles: 0,
+        others: 0,
+    };
+
+    /// Lower and upper corner of a child's box.
+    pub fn child_box(&self, lane: usize) -> (Vec3, Vec3) {
+        let corner = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
+        (corner(&self.bounds[0]), corner(&self.bounds[1]))
+    }
+
+    /// Gives a lane its child.
+    pub fn set_child(&mut self, lane: usize, (lower, upper): (Vec3, Vec3), child: ChildRef) {
+        for axis in 0..3 {
+            self.bounds[0][axis][lane] = lower[axis];
+            self.bounds[1][axis][lane] = upper[axis];
+        }
+        self.child[lane] = child.pack();
+        match child {
+            ChildRef::Node(_) => {}
+            ChildRef::Triangles(_) => self.triangles |= 1 << lane,
+            ChildRef::Sphere(_) | ChildRef::Square(_) => self.others |= 1 << lane,
+        }
+    }
 }
 
 /// What a child of a node is: a node or a leaf of one kind.
@@ -75,7 +112,8 @@ pub enum ChildRef {
 
 impl ChildRef {
     const SHIFT: u32 = 30;
-    const INDEX: u32 = (1 << Self::SHIFT) - 1;
+    /// The bits of a packed reference that are the index.
+    pub const INDEX: u32 = (1 << Self::SHIFT) - 1;
 
     /// Two bits of kind, thirty of index.
     pub const fn pack(self) -> u32 {
@@ -179,13 +217,13 @@ fn traverse(geometry: &Geometry<'_>, ray: &Ray, mut visit: impl FnMut(ChildRef, 
 
 /// The parameter at which the ray enters a child's box, if it crosses the box between `ray.t_min` and `limit`.
 fn enter_box(node: &BvhNode, lane: usize, ray: &Ray, reciprocal: Vec3, limit: f32) -> Option<f32> {
-    let corner = |of: &[[f32; LANES]; 3]| (Vec3::new(of[0][lane], of[1][lane], of[2][lane]) - ray.origin) * reciprocal;
-    let (a, b) = (corner(&node.lower), corner(&node.upper));
+    let (lower, upper) = node.child_box(lane);
+    let (a, b) = ((lower - ray.origin) * reciprocal, (upper - ray.origin) * reciprocal);
     let entry = a.min(b).max_element().max(ray.t_min);
     let exit = a.max(b).min_element();
     // Inverted boxes of empty children come out with lower > upper on every axis, and so with their ends swapped;
     // they are told by their order.
-    (node.lower[0][lane] <= node.upper[0][lane] && entry <= exit * SLAB_SLACK && entry <= limit).then_some(entry)
+    (lower.x <= upper.x && entry <= exit * SLAB_SLACK && entry <= limit).then_some(entry)
 }
 
 #[cfg(test)]

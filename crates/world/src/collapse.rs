@@ -1,18 +1,15 @@
 //! The binary tree made 8 wide, with triangles gathered into blocks.
 
 use crate::binary_tree::{self, BinaryNode, Content};
-use crate::bvh::{BvhNode, ChildRef, LANES, TriangleBlock};
+use crate::bvh::{BvhNode, ChildRef, TriangleBlock};
 use crate::shapes::Builder;
+use crate::widen::{Cut, children, cuts};
 use glam::Vec3;
 use lightcuts_kernel::intersect::{SPHERE, TRIANGLE};
 
 /// How far boxes are widened, relative to the largest coordinate in play: more than the rounding error of a hit found
 /// from anywhere in the scene, so that a hit is never lost to its box.
 pub(crate) const PADDING: f32 = 2e-6;
-
-/// An empty child: a box that no ray enters.
-const EMPTY_NODE: BvhNode =
-    BvhNode { lower: [[f32::INFINITY; LANES]; 3], upper: [[f32::NEG_INFINITY; LANES]; 3], child: [u32::MAX; LANES] };
 
 /// Builds the hierarchy over everything in the builder. `reach` is the camera's largest coordinate.
 pub(crate) fn build(builder: &Builder, reach: f32) -> (Vec<BvhNode>, Vec<TriangleBlock>) {
@@ -24,7 +21,8 @@ pub(crate) fn build(builder: &Builder, reach: f32) -> (Vec<BvhNode>, Vec<Triangl
         return (Vec::new(), Vec::new());
     }
     let sizes = triangle_counts(&binary, builder);
-    let mut collapse = Collapse { binary: &binary, sizes: &sizes, builder, nodes: Vec::new(), blocks: Vec::new() };
+    let cuts = cuts(&binary, &sizes);
+    let mut collapse = Collapse { binary: &binary, cuts: &cuts, builder, nodes: Vec::new(), blocks: Vec::new() };
     collapse.run();
     (collapse.nodes, collapse.blocks)
 }
@@ -45,7 +43,7 @@ fn triangle_counts(binary: &[BinaryNode], builder: &Builder) -> Vec<Option<u32>>
 
 struct Collapse<'a> {
     binary: &'a [BinaryNode],
-    sizes: &'a [Option<u32>],
+    cuts: &'a [Cut],
     builder: &'a Builder,
     nodes: Vec<BvhNode>,
     blocks: Vec<TriangleBlock>,
@@ -53,56 +51,44 @@ struct Collapse<'a> {
 
 impl Collapse<'_> {
     fn run(&mut self) {
-        self.nodes.push(EMPTY_NODE);
+        self.nodes.push(BvhNode::EMPTY);
         let mut open = vec![(0_u32, 0_usize)];
         while let Some((root, target)) = open.pop() {
-            for (lane, child) in self.widen(root).into_iter().enumerate() {
-                let node = &self.binary[child as usize];
-                for axis in 0..3 {
-                    self.nodes[target].lower[axis][lane] = node.lower[axis];
-                    self.nodes[target].upper[axis][lane] = node.upper[axis];
-                }
+            let first = open.len();
+            for (lane, child) in self.children(root).into_iter().enumerate() {
                 let reference = self.leaf(child).unwrap_or_else(|| {
-                    self.nodes.push(EMPTY_NODE);
+                    self.nodes.push(BvhNode::EMPTY);
                     open.push((child, self.nodes.len() - 1));
                     ChildRef::Node(self.nodes.len() as u32 - 1)
                 });
-                self.nodes[target].child[lane] = reference.pack();
+                let node = &self.binary[child as usize];
+                self.nodes[target].set_child(lane, (node.lower, node.upper), reference);
             }
+            // What is beside the first child in memory is what rays visit after it.
+            open[first..].reverse();
         }
     }
 
-    /// Up to eight descendants that together cover a node: the one with the largest surface is opened next.
-    fn widen(&self, root: u32) -> Vec<u32> {
-        let mut wide = vec![root];
-        while wide.len() < LANES {
-            let largest = wide.iter().enumerate().filter(|&(_, &i)| !self.is_leaf(i)).max_by(|a, b| {
-                self.binary[*a.1 as usize].half_area().total_cmp(&self.binary[*b.1 as usize].half_area())
-            });
-            let Some((place, &index)) = largest else { break };
-            if let Content::Children(left, right) = self.binary[index as usize].content {
-                wide[place] = left;
-                wide.push(right);
-            }
-        }
-        wide
-    }
-
-    fn is_leaf(&self, index: u32) -> bool {
-        matches!(self.binary[index as usize].content, Content::Primitive(_))
-            || self.sizes[index as usize].is_some_and(|n| n as usize <= LANES)
+    /// The children of a node, the largest first: rays that want any hit begin with them.
+    fn children(&self, root: u32) -> Vec<u32> {
+        let mut children = children(self.binary, self.cuts, root);
+        let area = |&index: &u32| self.binary[index as usize].half_area();
+        children.sort_by(|a, b| area(b).total_cmp(&area(a)));
+        children
     }
 
     fn leaf(&mut self, index: u32) -> Option<ChildRef> {
-        if self.sizes[index as usize].is_some_and(|n| n as usize <= LANES) {
-            return Some(self.triangle_block(index));
+        if !self.cuts[index as usize].is_leaf {
+            return None;
         }
-        let Content::Primitive(p) = self.binary[index as usize].content else { return None };
-        let primitive = self.builder.primitives[p as usize];
-        Some(if primitive.kind == SPHERE {
-            ChildRef::Sphere(primitive.index)
-        } else {
-            ChildRef::Square(primitive.index)
+        let primitive = match self.binary[index as usize].content {
+            Content::Primitive(p) => self.builder.primitives[p as usize],
+            Content::Children(..) => return Some(self.triangle_block(index)),
+        };
+        Some(match primitive.kind {
+            TRIANGLE => self.triangle_block(index),
+            SPHERE => ChildRef::Sphere(primitive.index),
+            _ => ChildRef::Square(primitive.index),
         })
     }
 

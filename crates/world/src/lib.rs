@@ -12,6 +12,7 @@ pub mod physical;
 mod shapes;
 mod thesis;
 mod validate;
+mod widen;
 
 pub use compressed::CompressedHierarchy;
 pub use physical::PhysicalWorld;

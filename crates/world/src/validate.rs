@@ -1,6 +1,6 @@
 //! What must hold of a world: every reference points at something and every box holds what is under it.
 
-use crate::bvh::{BvhNode, ChildRef, LANES, STACK_SIZE};
+use crate::bvh::{ChildRef, LANES, MAX_LEVELS};
 use crate::{Shapes, World};
 use glam::Vec3;
 use lightcuts_kernel::ray::NONE;
@@ -50,11 +50,11 @@ impl Shapes {
             if visits > self.nodes.len() {
                 return Err(Defect::NotATree);
             }
-            if depth * (LANES - 1) + 1 > STACK_SIZE {
+            if depth > MAX_LEVELS {
                 return Err(Defect::TooDeep);
             }
             for lane in 0..LANES {
-                let child_box = lane_box(node, lane);
+                let child_box = node.child_box(lane);
                 if child_box.0.x > child_box.1.x {
                     continue;
                 }
@@ -96,11 +96,6 @@ impl Shapes {
             }
         }
     }
-}
-
-fn lane_box(node: &BvhNode, lane: usize) -> (Vec3, Vec3) {
-    let corner = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
-    (corner(&node.lower), corner(&node.upper))
 }
 
 fn holds(outer: (Vec3, Vec3), inner: (Vec3, Vec3)) -> bool {

@@ -63,9 +63,9 @@ impl Scene {
 
     fn reference(self) -> Reference {
         let (original_cpu_s, target_factor) = match self {
-            Self::Simple => ([8.8, 14.7], 5.0),
-            Self::Venus => ([175.5, 174.9], 60.0),
-            Self::Galleon => ([572.6, 489.3], 150.0),
+            Self::Simple => ([8.8, 14.7], 20.0),
+            Self::Venus => ([175.5, 174.9], 150.0),
+            Self::Galleon => ([572.6, 489.3], 500.0),
         };
         Reference { original_cpu_s, target_factor }
     }

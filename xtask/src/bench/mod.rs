@@ -1,10 +1,14 @@
 //! `cargo xtask bench`: measurements that are kept in `docs/benchmarks.md` and `benches/LOG.md`.
 
 mod experiment;
+mod format;
 mod gpu;
 mod measure;
+mod rays;
 mod record;
+mod room;
 mod row;
+mod scatter;
 mod table;
 mod thesis;
 
@@ -17,6 +21,8 @@ pub(crate) enum Bench {
     Thesis(thesis::Args),
     /// A GPU: the thesis' scenes, rays, choice of VPLs, and how long its submissions take.
     Gpu(gpu::Args),
+    /// Rays on the CPU, one by one and eight at a time, against obvhs and Embree.
+    Rays(rays::Args),
 }
 
 /// Runs a benchmark.
@@ -24,5 +30,6 @@ pub(crate) fn run(bench: &Bench) -> Result<()> {
     match bench {
         Bench::Thesis(args) => thesis::run(args),
         Bench::Gpu(args) => gpu::run(args),
+        Bench::Rays(args) => rays::run(args),
     }
 }

@@ -87,13 +87,14 @@ mod tests {
 
     #[test]
     fn targets_are_met_or_missed() {
-        let row = |seconds: f64| Row::new(&case(Scene::Simple), Configuration::Lightcuts, measured(seconds), Some(2.0));
-        let met = row(2.2).cells;
+        let row =
+            |seconds: f64| Row::new(&case(Scene::Simple), Configuration::Lightcuts, measured(seconds), Some(0.64));
+        let met = row(0.7).cells;
         let expected =
-            ["Simple", "lightcuts", "290", "68.3130 %", "2.20", "14.7", "6.7", "5 met", "1.10, at most 1.10 met"];
+            ["Simple", "lightcuts", "290", "68.3130 %", "0.70", "14.7", "21.0", "20 met", "1.09, at most 1.10 met"];
         assert_eq!(met, expected);
-        let missed = row(3.0).cells;
-        assert_eq!(missed[6..], ["4.9", "5 missed", "1.50, at most 1.10 missed"]);
+        let missed = row(1.0).cells;
+        assert_eq!(missed[6..], ["14.7", "20 missed", "1.56, at most 1.10 missed"]);
     }
 
     #[test]

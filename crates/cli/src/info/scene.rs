@@ -166,14 +166,12 @@ fn texture(scene: &SceneDesc, material: &MaterialDesc) -> Option<Texture> {
     Some(Texture { name: image.name.clone(), width: image.width, height: image.height, mode })
 }
 
-/// The union of the root's boxes; empty ones are inverted.
+/// The union of the root's boxes; empty ones are inverted and add nothing.
 fn bounds(world: &World) -> Option<[[f32; 3]; 2]> {
     let root = world.shapes.nodes.first()?;
-    let taken = |lane: &usize| root.lower[0][*lane] <= root.upper[0][*lane];
-    let lanes: Vec<usize> = (0..root.child.len()).filter(taken).collect();
-    let lower = root.lower.map(|of_axis| lanes.iter().map(|&lane| of_axis[lane]).fold(f32::INFINITY, f32::min));
-    let upper = root.upper.map(|of_axis| lanes.iter().map(|&lane| of_axis[lane]).fold(f32::NEG_INFINITY, f32::max));
-    (!lanes.is_empty()).then_some([lower, upper])
+    let boxes = (0..root.child.len()).map(|lane| root.child_box(lane));
+    let (lower, upper) = boxes.reduce(|(a, b), (lower, upper)| (a.min(lower), b.max(upper)))?;
+    Some([lower.to_array(), upper.to_array()])
 }
 
 fn recommended(scene: &SceneDesc) -> Vec<Parameter> {

@@ -2,9 +2,9 @@
 
 #![allow(unsafe_code)]
 
-use super::avx2_packet::{Packet, any_hits};
+use super::avx2_packet::{Packet, Source, any_hits};
 use super::avx2_trace::{Wide3, dot, load, load3, splat3, store, sub};
-use super::gather::{Candidates, Decisions, Gathered, PacketStack, Receiver};
+use super::gather::{Candidates, Decisions, Gathered, Receiver};
 use super::tracer::Tracer;
 use crate::light_node::{LANES, LightNode, VplBlock};
 use glam::Vec3;
@@ -19,7 +19,7 @@ use std::arch::x86_64::{
 };
 
 /// The ends of shadow rays; twin of `kernel::ray::shadow_ray`.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma,bmi1")]
 fn shadow_ends(rules: Rules, to_light: Wide3, epsilon: f32) -> (__m256, __m256) {
     let one = _mm256_set1_ps(1.0);
     match rules {
@@ -33,7 +33,7 @@ fn shadow_ends(rules: Rules, to_light: Wide3, epsilon: f32) -> (__m256, __m256) 
 }
 
 /// All bits of the lanes that are set in a mask.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma,bmi1")]
 fn spread(mask: u32) -> __m256 {
     let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
     let chosen = _mm256_and_si256(_mm256_set1_epi32(mask as i32), bits);
@@ -41,7 +41,7 @@ fn spread(mask: u32) -> __m256 {
 }
 
 /// Decides for every cluster of a node; twin of `kernel::light_tree::decide`, same bits.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma,bmi1")]
 pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decisions {
     let zero = _mm256_setzero_ps();
     let sign_bit = _mm256_set1_ps(-0.0);
@@ -79,7 +79,7 @@ pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decis
 }
 
 /// Lanes whose relevance reaches the threshold; twin of `kernel::light_tree::is_relevant`.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma,bmi1")]
 fn relevant(block: &VplBlock, cos_phi: __m256, dist_sq: __m256, threshold: f32) -> u32 {
     // With NaN in the first place the maximum is its second operand, as in the plain version.
     let flux = _mm256_mul_ps(_mm256_max_ps(cos_phi, _mm256_setzero_ps()), load(&block.intensity));
@@ -88,18 +88,18 @@ fn relevant(block: &VplBlock, cos_phi: __m256, dist_sq: __m256, threshold: f32) 
 }
 
 /// What the chosen VPLs add; twin of `vpl_incidence` and `phong_vpl`.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma,bmi1")]
 pub(super) fn evaluate(
     tracer: &Tracer<'_>,
     blocks: &[VplBlock],
     candidates: &[Candidates],
     threshold: Option<f32>,
     at: &Receiver,
-    stack: &mut PacketStack,
 ) -> Gathered {
     let zero = _mm256_setzero_ps();
     let one = _mm256_set1_ps(1.0);
     let (point, normal, diffuse) = (splat3(at.point), splat3(at.normal), splat3(at.diffuse));
+    let source = Source::new(&tracer.geometry, at.point);
     let mut sums = [zero; 3];
     let mut gathered = Gathered { color: Vec3::ZERO, chosen: 0, shadow_rays: 0 };
     for candidates in candidates {
@@ -124,8 +124,8 @@ pub(super) fn evaluate(
         }
         gathered.shadow_rays += u64::from(facing.count_ones());
         let (t_min, t_max) = shadow_ends(tracer.rules, to_light, at.epsilon);
-        let packet = Packet { origin: at.point, directions: to_light, t_min, t_max };
-        let hidden = any_hits(&tracer.geometry, &packet, facing, tracer.rules, stack);
+        let packet = Packet { origin: point, direction: to_light, t_min, t_max };
+        let hidden = any_hits(tracer, &packet, Some(&source), facing);
         let visible = spread(facing & !hidden);
         let emission = _mm256_mul_ps(load(&block.attenuation), cos_phi);
         let colors = load3(&block.diffuse);

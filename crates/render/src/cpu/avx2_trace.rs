@@ -1,20 +1,21 @@
 //! Traversal with AVX2: eight boxes or eight triangles at a time. Twin of `lightcuts_world::bvh`, same hits.
+//!
+//! A ray visits few nodes and waits for each: what counts is the way from one node's boxes to the address of the next, and how
+//! often the processor guesses wrong. So boxes are tested by fused operations without a multiplication behind them, the next
+//! node is known before leaves are tested, and only what is left of a node is remembered.
 
 #![allow(unsafe_code)]
 
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{intersect_sphere, intersect_square, min_determinant};
 use lightcuts_kernel::ray::{Hit, Ray, SLAB_SLACK, safe_reciprocal};
-use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE, TriangleBlock};
+use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, MAX_LEVELS, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NLT_UQ, _mm256_add_ps, _mm256_and_ps,
-    _mm256_andnot_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
-    _mm256_mul_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_storeu_ps, _mm256_sub_ps,
+    _mm256_andnot_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_fmsub_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps,
+    _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_storeu_ps, _mm256_sub_ps,
 };
 use std::mem::MaybeUninit;
-
-/// Levels that the any-hit stack can hold; a world's hierarchy is never deeper (`World::validate`).
-const MAX_LEVELS: usize = STACK_SIZE / (LANES - 1);
 
 /// Eight lanes from memory.
 #[target_feature(enable = "avx2")]
@@ -58,67 +59,83 @@ pub(super) fn sub(a: Wide3, b: Wide3) -> Wide3 {
 }
 
 #[target_feature(enable = "avx2")]
-fn cross(a: Wide3, b: Wide3) -> Wide3 {
+pub(super) fn cross(a: Wide3, b: Wide3) -> Wide3 {
     let minor = |i: usize, j: usize| _mm256_sub_ps(_mm256_mul_ps(a[i], b[j]), _mm256_mul_ps(b[i], a[j]));
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-/// A ray in all lanes.
-pub(super) struct WideRay {
+/// A ray in all lanes, to meet boxes.
+struct BoxRay {
+    reciprocal: Wide3,
+    /// Origin times reciprocal.
+    start: Wide3,
+    /// Both for the sides where boxes are left, with [`SLAB_SLACK`].
+    far_reciprocal: Wide3,
+    far_start: Wide3,
+    /// Per axis 1 where the ray runs towards smaller coordinates, and so enters boxes at their upper side; else 0.
+    backwards: [usize; 3],
+    t_min: __m256,
+}
+
+impl BoxRay {
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    fn new(ray: &Ray) -> Self {
+        let reciprocal = safe_reciprocal(ray.direction);
+        let start = ray.origin * reciprocal;
+        Self {
+            reciprocal: splat3(reciprocal),
+            start: splat3(start),
+            far_reciprocal: splat3(reciprocal * SLAB_SLACK),
+            far_start: splat3(start * SLAB_SLACK),
+            backwards: reciprocal.to_array().map(|c| usize::from(c < 0.0)),
+            t_min: _mm256_set1_ps(ray.t_min),
+        }
+    }
+
+    /// Children whose boxes the ray crosses before `limit`, and where it enters them.
+    ///
+    /// The rounding of `start` moves a side by at most 2^-24 of the origin's coordinate, a small part of the padding that boxes
+    /// have for it (`PADDING` in `lightcuts_world`); the rest is as in the plain version.
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[inline]
+    fn enter(&self, node: &BvhNode, limit: __m256) -> (u32, __m256) {
+        let near = |axis: usize| {
+            let side = load(&node.bounds[self.backwards[axis] & 1][axis]);
+            _mm256_fmsub_ps(side, self.reciprocal[axis], self.start[axis])
+        };
+        let far = |axis: usize| {
+            let side = load(&node.bounds[(self.backwards[axis] & 1) ^ 1][axis]);
+            _mm256_fmsub_ps(side, self.far_reciprocal[axis], self.far_start[axis])
+        };
+        let entry = _mm256_max_ps(_mm256_max_ps(near(0), near(1)), _mm256_max_ps(near(2), self.t_min));
+        let exit = _mm256_min_ps(_mm256_min_ps(far(0), far(1)), _mm256_min_ps(far(2), limit));
+        (_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32, entry)
+    }
+}
+
+/// A ray in all lanes, to meet triangles.
+struct WideRay {
     origin: Wide3,
     direction: Wide3,
-    reciprocal: Wide3,
-    /// Per axis: whether the ray runs towards smaller coordinates, and so enters boxes at their upper side.
-    backwards: [bool; 3],
     t_min: __m256,
     t_max: __m256,
 }
 
 impl WideRay {
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma,bmi1")]
     fn new(ray: &Ray) -> Self {
-        let reciprocal = safe_reciprocal(ray.direction);
-        Self {
-            reciprocal: splat3(reciprocal),
-            backwards: [reciprocal.x < 0.0, reciprocal.y < 0.0, reciprocal.z < 0.0],
-            ..Self::for_triangles(ray)
-        }
-    }
-
-    /// A ray that is not to meet boxes.
-    #[target_feature(enable = "avx2")]
-    pub(super) fn for_triangles(ray: &Ray) -> Self {
         Self {
             origin: splat3(ray.origin),
             direction: splat3(ray.direction),
-            reciprocal: [_mm256_setzero_ps(); 3],
-            backwards: [false; 3],
             t_min: _mm256_set1_ps(ray.t_min),
             t_max: _mm256_set1_ps(ray.t_max),
         }
     }
 
-    /// Children whose boxes the ray crosses before `limit`, and where it enters them.
-    #[target_feature(enable = "avx2")]
-    fn enter(&self, node: &BvhNode, limit: __m256) -> (u32, __m256) {
-        let mut entry = self.t_min;
-        let mut exit = limit;
-        for axis in 0..3 {
-            let (first, second) = if self.backwards[axis] {
-                (&node.upper[axis], &node.lower[axis])
-            } else {
-                (&node.lower[axis], &node.upper[axis])
-            };
-            let at = |side| _mm256_mul_ps(_mm256_sub_ps(load(side), self.origin[axis]), self.reciprocal[axis]);
-            entry = _mm256_max_ps(entry, at(first));
-            exit = _mm256_min_ps(exit, _mm256_mul_ps(at(second), _mm256_set1_ps(SLAB_SLACK)));
-        }
-        (_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32, entry)
-    }
-
     /// Lanes of a block that the ray hits, with t, u and v; the arithmetic of `intersect_triangle`.
-    #[target_feature(enable = "avx2")]
-    pub(super) fn intersect(&self, block: &TriangleBlock, min_determinant: f32) -> (u32, [__m256; 3]) {
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[inline]
+    fn intersect(&self, block: &TriangleBlock, min_determinant: f32) -> (u32, [__m256; 3]) {
         let (edge1, edge2) = (load3(&block.edge1), load3(&block.edge2));
         let p = cross(self.direction, edge2);
         let determinant = dot(edge1, p);
@@ -145,31 +162,50 @@ impl WideRay {
 }
 
 /// A stack of fixed size that costs nothing to make: clearing its memory would take longer than most traversals.
-struct Stack<T: Copy, const SIZE: usize> {
+pub(super) struct Stack<T: Copy, const SIZE: usize> {
     entries: [MaybeUninit<T>; SIZE],
-    size: usize,
+    pub(super) size: usize,
 }
 
 impl<T: Copy, const SIZE: usize> Stack<T, SIZE> {
-    const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self { entries: [const { MaybeUninit::uninit() }; SIZE], size: 0 }
     }
 
+    /// Without a branch: what is not wanted is written and then forgotten.
     #[inline]
-    fn push(&mut self, value: T) {
+    pub(super) fn push_if(&mut self, value: T, is_wanted: bool) {
         self.entries[self.size] = MaybeUninit::new(value);
-        self.size += 1;
+        self.size += usize::from(is_wanted);
     }
 
     #[inline]
-    fn pop(&mut self) -> Option<T> {
+    pub(super) fn pop(&mut self) -> Option<T> {
         self.size = self.size.checked_sub(1)?;
-        // SAFETY: every entry below the size was written by `push`.
+        // SAFETY: every entry below the size was written by `push_if`.
         Some(unsafe { self.entries[self.size].assume_init() })
+    }
+
+    /// Puts a value below those that `is_below` says it is to be below, among the entries from `base` on.
+    #[inline]
+    pub(super) fn insert(&mut self, base: usize, value: T, is_below: impl Fn(&T) -> bool) {
+        let mut place = self.size;
+        while place > base {
+            // SAFETY: every entry below the size was written.
+            let other = unsafe { self.entries[place - 1].assume_init() };
+            if !is_below(&other) {
+                break;
+            }
+            self.entries[place] = MaybeUninit::new(other);
+            place -= 1;
+        }
+        self.entries[place] = MaybeUninit::new(value);
+        self.size += 1;
     }
 }
 
 /// Lanes set in a mask, lowest first.
+#[inline]
 pub(super) fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let lane = mask.trailing_zeros() as usize;
@@ -178,105 +214,134 @@ pub(super) fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Whether anything lies between the ray's ends.
-#[target_feature(enable = "avx2")]
-pub(super) fn any_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> bool {
-    if geometry.nodes.is_empty() {
-        return false;
-    }
-    let wide = WideRay::new(ray);
+/// Where the block of a child is that is one.
+#[inline]
+pub(super) fn block<'a>(geometry: &Geometry<'a>, node: &BvhNode, lane: usize) -> &'a TriangleBlock {
+    &geometry.triangles[(node.child[lane % LANES] & ChildRef::INDEX) as usize]
+}
+
+/// Whether anything lies between the ray's ends, under a node, 0 for everything. `OTHERS` says whether spheres and squares
+/// count.
+#[target_feature(enable = "avx2,fma,bmi1")]
+pub(super) fn any_hit<const OTHERS: bool>(geometry: &Geometry<'_>, ray: &Ray, rules: Rules, under: u32) -> bool {
+    let Some(mut node) = geometry.nodes.get(under as usize) else { return false };
+    let (boxes, wide) = (BoxRay::new(ray), WideRay::new(ray));
+    let least = min_determinant(rules);
     // One entry per level: a node and those of its inner children that are still to be visited.
     let mut stack = Stack::<(u32, u32), MAX_LEVELS>::new();
-    let mut index = 0_u32;
+    let mut index = under;
     loop {
-        let node = &geometry.nodes[index as usize];
-        let mut inner = 0;
-        for lane in lanes(wide.enter(node, wide.t_max).0) {
-            match ChildRef::unpack(node.child[lane]) {
-                ChildRef::Node(_) => inner |= 1 << lane,
-                leaf => {
-                    if leaf_is_hit(geometry, leaf, &wide, ray, rules) {
-                        return true;
-                    }
+        let here = node;
+        let mask = boxes.enter(here, wide.t_max).0;
+        let mut inner = mask & !(here.triangles | here.others);
+        // The next node before the leaves of this one: the processor can fetch it meanwhile.
+        let mut is_last = false;
+        if inner == 0 {
+            match stack.pop() {
+                Some(rest) => {
+                    (index, inner) = rest;
+                    node = &geometry.nodes[index as usize];
                 }
+                None => is_last = true,
             }
         }
-        if inner != 0 {
-            stack.push((index, inner));
+        if !is_last {
+            let rest = inner & (inner - 1);
+            stack.push_if((index, rest), rest != 0);
+            index = node.child[inner.trailing_zeros() as usize % LANES];
+            node = &geometry.nodes[index as usize];
         }
-        let Some((parent, pending)) = stack.pop() else { return false };
-        let rest = pending & (pending - 1);
-        if rest != 0 {
-            stack.push((parent, rest));
+        for lane in lanes(mask & here.triangles) {
+            if wide.intersect(block(geometry, here, lane), least).0 != 0 {
+                return true;
+            }
         }
-        index = geometry.nodes[parent as usize].child[pending.trailing_zeros() as usize];
+        if OTHERS && lanes(mask & here.others).any(|lane| other_hit(geometry, here.child[lane], ray, rules).is_some()) {
+            return true;
+        }
+        if is_last {
+            return false;
+        }
     }
 }
 
-#[target_feature(enable = "avx2")]
-fn leaf_is_hit(geometry: &Geometry<'_>, leaf: ChildRef, wide: &WideRay, ray: &Ray, rules: Rules) -> bool {
-    match leaf {
-        ChildRef::Node(_) => false,
-        ChildRef::Triangles(i) => wide.intersect(&geometry.triangles[i as usize], min_determinant(rules)).0 != 0,
-        ChildRef::Sphere(i) => intersect_sphere(&geometry.spheres[i as usize], ray, rules).is_some(),
-        ChildRef::Square(i) => intersect_square(&geometry.squares[i as usize], ray).is_some(),
+/// The hit of a child that is a sphere or a square.
+#[inline]
+pub(super) fn other_hit(geometry: &Geometry<'_>, child: u32, ray: &Ray, rules: Rules) -> Option<Hit> {
+    match ChildRef::unpack(child) {
+        ChildRef::Node(_) | ChildRef::Triangles(_) => None,
+        ChildRef::Sphere(i) => intersect_sphere(&geometry.spheres[i as usize], ray, rules),
+        ChildRef::Square(i) => intersect_square(&geometry.squares[i as usize], ray),
     }
 }
 
 /// The nearest hit between the ray's ends; of equal hits the first in file order.
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma,bmi1")]
 pub(super) fn closest_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> Hit {
-    let mut best = Hit::none(ray.t_max);
-    if geometry.nodes.is_empty() {
-        return best;
-    }
-    let wide = WideRay::new(ray);
+    nearer_hit(geometry, ray, rules, 0, Hit::none(ray.t_max))
+}
+
+/// The nearest of the hits under a node and of the best one so far.
+#[target_feature(enable = "avx2,fma,bmi1")]
+#[inline]
+pub(super) fn nearer_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules, under: u32, mut best: Hit) -> Hit {
+    let Some(mut node) = geometry.nodes.get(under as usize) else { return best };
+    let (boxes, wide) = (BoxRay::new(ray), WideRay::new(ray));
+    let least = min_determinant(rules);
     let mut stack = Stack::<(u32, f32), STACK_SIZE>::new();
-    stack.push((ChildRef::Node(0).pack(), ray.t_min));
-    while let Some((child, entry)) = stack.pop() {
-        if entry > best.t {
-            continue;
-        }
-        match ChildRef::unpack(child) {
-            ChildRef::Node(index) => {
-                let node = &geometry.nodes[index as usize];
-                let (mask, entries) = wide.enter(node, _mm256_set1_ps(best.t));
-                let entries = store(entries);
-                // Sorted, so that the nearest child ends on top of the stack.
-                let mut sorted = [(0, 0.0); LANES];
-                let mut count = 0;
+    loop {
+        let (mask, entry) = boxes.enter(node, _mm256_set1_ps(best.t));
+        for lane in lanes(mask & node.triangles) {
+            let block = block(geometry, node, lane);
+            let (mask, values) = wide.intersect(block, least);
+            if mask != 0 {
+                let [t, u, v] = [store(values[0]), store(values[1]), store(values[2])];
                 for lane in lanes(mask) {
-                    let mut place = count;
-                    while place > 0 && sorted[place - 1].1 < entries[lane] {
-                        sorted[place] = sorted[place - 1];
-                        place -= 1;
-                    }
-                    sorted[place] = (node.child[lane], entries[lane]);
-                    count += 1;
-                }
-                sorted[..count].iter().for_each(|&child| stack.push(child));
-            }
-            ChildRef::Triangles(index) => {
-                let block = &geometry.triangles[index as usize];
-                let (mask, values) = wide.intersect(block, min_determinant(rules));
-                if mask != 0 {
-                    let [t, u, v] = [store(values[0]), store(values[1]), store(values[2])];
-                    for lane in lanes(mask) {
-                        best.take_nearer(Hit { t: t[lane], primitive: block.primitive[lane], u: u[lane], v: v[lane] });
-                    }
+                    best.take_nearer(Hit { t: t[lane], primitive: block.primitive[lane], u: u[lane], v: v[lane] });
                 }
             }
-            ChildRef::Sphere(i) => {
-                if let Some(hit) = intersect_sphere(&geometry.spheres[i as usize], ray, rules) {
-                    best.take_nearer(hit);
-                }
+        }
+        for lane in lanes(mask & node.others) {
+            if let Some(hit) = other_hit(geometry, node.child[lane], ray, rules) {
+                best.take_nearer(hit);
             }
-            ChildRef::Square(i) => {
-                if let Some(hit) = intersect_square(&geometry.squares[i as usize], ray) {
-                    best.take_nearer(hit);
-                }
-            }
+        }
+        let inner = mask & !(node.triangles | node.others);
+        let next = if inner == 0 { nearer(&mut stack, best.t) } else { Some(nearest(&mut stack, node, inner, entry)) };
+        let Some(index) = next else { return best };
+        node = &geometry.nodes[index as usize];
+    }
+}
+
+/// The nearest of some children; the others go to the stack, the farthest lowest.
+#[target_feature(enable = "avx2,fma,bmi1")]
+#[inline]
+fn nearest(stack: &mut Stack<(u32, f32), STACK_SIZE>, node: &BvhNode, inner: u32, entry: __m256) -> u32 {
+    let first = inner.trailing_zeros() as usize % LANES;
+    let rest = inner & (inner - 1);
+    if rest == 0 {
+        return node.child[first];
+    }
+    let entries = store(entry);
+    let base = stack.size;
+    let mut near = (node.child[first], entries[first]);
+    for lane in lanes(rest) {
+        let mut other = (node.child[lane], entries[lane]);
+        if other.1 < near.1 {
+            std::mem::swap(&mut near, &mut other);
+        }
+        stack.insert(base, other, |above| above.1 < other.1);
+    }
+    near.0
+}
+
+/// The next node of the stack that the ray enters before `limit`.
+#[inline]
+fn nearer(stack: &mut Stack<(u32, f32), STACK_SIZE>, limit: f32) -> Option<u32> {
+    loop {
+        let (index, entry) = stack.pop()?;
+        if entry <= limit {
+            return Some(index);
         }
     }
-    best
 }

@@ -39,9 +39,6 @@ pub(crate) struct Receiver {
     pub(crate) epsilon: f32,
 }
 
-/// Working memory of [`evaluate`]: subtrees still to be visited, each with the rays of a packet that enter it.
-pub(crate) type PacketStack = Vec<(u32, u32)>;
-
 /// Nodes above a block in the largest tree: each level divides by eight, and 8^11 is more than 2^32 VPLs.
 const MAX_LEVELS: usize = 11;
 
@@ -214,12 +211,11 @@ pub(crate) fn evaluate(
     candidates: &[Candidates],
     threshold: Option<f32>,
     at: &Receiver,
-    stack: &mut PacketStack,
 ) -> Gathered {
     #[cfg(target_arch = "x86_64")]
     if tracer.avx2 {
         // SAFETY: `avx2` is set only where the machine has the feature.
-        return unsafe { super::avx2_gather::evaluate(tracer, blocks, candidates, threshold, at, stack) };
+        return unsafe { super::avx2_gather::evaluate(tracer, blocks, candidates, threshold, at) };
     }
     let mut sums = [Vec3::ZERO; LANES];
     let mut gathered = Gathered { color: Vec3::ZERO, chosen: 0, shadow_rays: 0 };

@@ -4,6 +4,8 @@
 //! tested against them.
 
 #[cfg(target_arch = "x86_64")]
+mod avx2_bundle;
+#[cfg(target_arch = "x86_64")]
 mod avx2_gather;
 #[cfg(target_arch = "x86_64")]
 mod avx2_packet;
@@ -16,8 +18,8 @@ mod tracer;
 pub use device::{CpuDevice, processor_name};
 #[cfg(test)]
 pub(crate) use gather::relevant_lanes;
-pub(crate) use gather::{Candidates, PacketStack, Receiver, evaluate, select, select_exhaustively};
-pub(crate) use tracer::Tracer;
+pub(crate) use gather::{Candidates, Receiver, evaluate, select, select_exhaustively};
+pub use tracer::Tracer;
 
 /// Whether SIMD instructions are used. Never changes the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -30,10 +32,13 @@ pub enum Simd {
 }
 
 impl Simd {
-    /// Whether AVX2 is to be used on this machine.
+    /// Whether AVX2 is to be used on this machine, with what processors have had beside it from the first on.
     pub(crate) fn has_avx2(self) -> bool {
         #[cfg(target_arch = "x86_64")]
-        return self == Self::Auto && std::arch::is_x86_feature_detected!("avx2");
+        return self == Self::Auto
+            && std::arch::is_x86_feature_detected!("avx2")
+            && std::arch::is_x86_feature_detected!("fma")
+            && std::arch::is_x86_feature_detected!("bmi1");
         #[cfg(not(target_arch = "x86_64"))]
         false
     }

@@ -1,7 +1,7 @@
 //! Section 1: what the device is, and the CPU beside it.
 
+use super::super::format::mebibytes;
 use super::super::table::Table;
-use super::format::mebibytes;
 use super::log::Log;
 use super::setup::{CPU_THREADS, Setup};
 use anyhow::Result;

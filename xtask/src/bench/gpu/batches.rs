@@ -1,6 +1,6 @@
 //! Batches of rays in a room, as coherent as those of a render and as incoherent as can be.
 
-use super::room::Room;
+use super::super::room::Room;
 use super::setup::Setup;
 use glam::Vec3;
 use lightcuts::gpu::records::ProbeRay;

@@ -1,8 +1,8 @@
 //! Section 6: the scene that the governor is tried with.
 
-use super::format::{block, grouped};
+use super::super::format::{block, grouped};
+use super::super::room::Room;
 use super::log::{Log, Work};
-use super::room::Room;
 use super::setup::{Setup, stage_s};
 use super::submissions::{of_works, verdict};
 use anyhow::Result;

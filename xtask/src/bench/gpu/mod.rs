@@ -2,13 +2,10 @@
 
 mod adapter;
 mod batches;
-mod format;
 mod heavy;
 mod log;
 mod published;
 mod rays;
-mod room;
-mod scatter;
 mod scenes;
 mod selection;
 mod setup;

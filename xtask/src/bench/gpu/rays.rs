@@ -1,11 +1,11 @@
 //! Section 3: how many rays per second, in rooms of three sizes.
 
+use super::super::format::{grouped, millions_per_second, seconds};
 use super::super::measure::middle;
+use super::super::room::Room;
 use super::super::table::Table;
 use super::batches::{LIGHTS, VPLS, batches, number};
-use super::format::{grouped, millions_per_second, seconds};
 use super::log::{Log, Work, merged, seconds as seconds_of, since};
-use super::room::Room;
 use super::setup::{CPU_THREADS, Render, Setup, stage_s};
 use anyhow::{Result, ensure};
 use lightcuts::gpu::GpuDevice;

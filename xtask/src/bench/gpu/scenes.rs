@@ -1,9 +1,9 @@
 //! Section 2: the thesis' scenes, without and with lightcuts, on the GPU and on the CPU.
 
 use super::super::experiment::{Case, Scene};
+use super::super::format::seconds;
 use super::super::measure::{Configuration, middle};
 use super::super::table::Table;
-use super::format::seconds;
 use super::log::{Log, Work};
 use super::published::published;
 use super::setup::{CPU_THREADS, Render, Setup, stage_s};

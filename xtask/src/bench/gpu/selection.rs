@@ -1,10 +1,10 @@
 //! Section 4: choosing some of very many VPLs, and building the tree for that.
 
+use super::super::format::{grouped, mebibytes, millions_per_second, milliseconds, seconds};
+use super::super::room::Room;
+use super::super::scatter::Point;
 use super::super::table::Table;
-use super::format::{grouped, mebibytes, millions_per_second, milliseconds, seconds};
 use super::log::{Log, Stages, Work, seconds as seconds_of};
-use super::room::Room;
-use super::scatter::Point;
 use super::setup::{CPU_THREADS, Render, Setup, stage_s};
 use anyhow::Result;
 use lightcuts::gpu::GpuDevice;

@@ -1,7 +1,7 @@
 //! Section 5: what programs took, and how long submissions were.
 
+use super::super::format::{block, grouped, mebibytes, milliseconds, seconds};
 use super::super::table::Table;
-use super::format::{block, grouped, mebibytes, milliseconds, seconds};
 use super::log::{Log, Stages, Work, merged};
 use super::setup::Setup;
 use anyhow::Result;

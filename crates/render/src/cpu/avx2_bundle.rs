@@ -1,0 +1,295 @@
+//! Eight rays that go much the same way, with AVX2. Twin of the plain traversal for each of them, same hits.
+//!
+//! The hierarchy is walked once for all: a node's eight boxes are tested against everything that lies between the rays, by
+//! interval arithmetic (Boulos et al. 2007, "Packet-based Whitted and Distribution Ray Tracing"), and what remains against each
+//! ray, eight at once, as are triangles. Rays that have come to be alone go on by themselves.
+
+#![allow(unsafe_code)]
+
+use super::avx2_packet::{Packet, meet, safe_reciprocal};
+use super::avx2_trace::{
+    Stack, Wide3, any_hit, block, closest_hit, cross, dot, lanes, load, nearer_hit, other_hit, splat3, store, sub,
+};
+use super::tracer::Tracer;
+use lightcuts_kernel::Rules;
+use lightcuts_kernel::intersect::min_determinant;
+use lightcuts_kernel::ray::{Hit, NONE, Ray, SLAB_SLACK};
+use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE, TriangleBlock};
+use std::arch::x86_64::{
+    __m256, __m256i, _CMP_EQ_OQ, _CMP_GE_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NLT_UQ, _mm256_add_ps, _mm256_and_ps,
+    _mm256_andnot_ps, _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpgt_epi32,
+    _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_epi32,
+    _mm256_set1_ps, _mm256_setzero_ps, _mm256_sub_ps,
+};
+
+/// So few rays are quicker alone.
+const ALONE: u32 = 2;
+
+/// A bit for each ray.
+const ALL: u32 = 0xff;
+
+/// Rays whose directions have the same signs, with the ranges of their numbers in all lanes.
+pub(super) struct Bundle<'a> {
+    packet: &'a Packet,
+    reciprocal: Wide3,
+    /// Per axis 1 where the rays run towards smaller coordinates, else 0.
+    backwards: [usize; 3],
+    /// Of the origins, where boxes are entered and where they are left: what makes the interval widest.
+    origin: [Wide3; 2],
+    /// Least and greatest reciprocals.
+    slope: [Wide3; 2],
+    t_min: __m256,
+}
+
+/// The nearest hits so far.
+struct Nearest {
+    t: __m256,
+    primitive: __m256i,
+    u: __m256,
+    v: __m256,
+}
+
+impl<'a> Bundle<'a> {
+    /// `None` if the rays in `asked`, a bit each, go different ways, or if there are none.
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    pub(super) fn new(packet: &'a Packet, asked: u32) -> Option<Self> {
+        if asked == 0 {
+            return None;
+        }
+        let reciprocal = packet.direction.map(|c| safe_reciprocal(c));
+        let mut backwards = [0; 3];
+        for axis in 0..3 {
+            let signs = _mm256_movemask_ps(reciprocal[axis]) as u32 & asked;
+            if signs != 0 && signs != asked {
+                return None;
+            }
+            backwards[axis] = usize::from(signs != 0);
+        }
+        let zero = _mm256_setzero_ps();
+        let (mut origin, mut slope) = ([[zero; 3]; 2], [[zero; 3]; 2]);
+        for axis in 0..3 {
+            let (least, greatest) = range(packet.origin[axis], asked);
+            // A side is farthest behind where the origin is farthest ahead.
+            let [entering, leaving] = if backwards[axis] == 1 { [least, greatest] } else { [greatest, least] };
+            (origin[0][axis], origin[1][axis]) = (_mm256_set1_ps(entering), _mm256_set1_ps(leaving));
+            let (least, greatest) = range(reciprocal[axis], asked);
+            (slope[0][axis], slope[1][axis]) = (_mm256_set1_ps(least), _mm256_set1_ps(greatest));
+        }
+        let t_min = _mm256_set1_ps(range(packet.t_min, asked).0);
+        Some(Self { packet, reciprocal, backwards, origin, slope, t_min })
+    }
+
+    /// Children that any of the rays may cross before `limit`, and the earliest that one may enter them.
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[inline]
+    fn enter(&self, node: &BvhNode, limit: __m256) -> (u32, __m256) {
+        let (mut entry, mut exit) = (self.t_min, limit);
+        for axis in 0..3 {
+            let near = _mm256_sub_ps(load(&node.bounds[self.backwards[axis] & 1][axis]), self.origin[0][axis]);
+            let far = _mm256_sub_ps(load(&node.bounds[(self.backwards[axis] & 1) ^ 1][axis]), self.origin[1][axis]);
+            let [least, greatest] = [self.slope[0][axis], self.slope[1][axis]];
+            entry = _mm256_max_ps(entry, _mm256_min_ps(_mm256_mul_ps(near, least), _mm256_mul_ps(near, greatest)));
+            exit = _mm256_min_ps(exit, _mm256_max_ps(_mm256_mul_ps(far, least), _mm256_mul_ps(far, greatest)));
+        }
+        let exit = _mm256_mul_ps(exit, _mm256_set1_ps(SLAB_SLACK));
+        (_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32, entry)
+    }
+
+    /// Rays that cross a child's box before `limit`.
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[inline]
+    fn meet(&self, node: &BvhNode, lane: usize, limit: __m256) -> u32 {
+        let (lower, upper) = node.child_box(lane);
+        meet(self.packet.origin, self.reciprocal, self.packet.t_min, limit, (splat3(lower), splat3(upper)))
+    }
+
+    /// The triangle of a lane: rays that hit it, with t, u and v; the arithmetic of `intersect_triangle`.
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[inline]
+    fn intersect(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
+        let at = |of: &[[f32; LANES]; 3]| [0, 1, 2].map(|axis: usize| _mm256_set1_ps(of[axis][lane]));
+        let (edge1, edge2) = (at(&block.edge1), at(&block.edge2));
+        let p = cross(self.packet.direction, edge2);
+        let determinant = dot(edge1, p);
+        let magnitude = _mm256_andnot_ps(_mm256_set1_ps(-0.0), determinant);
+        let mut hit = _mm256_cmp_ps::<_CMP_NLT_UQ>(magnitude, _mm256_set1_ps(least));
+        let inverse = _mm256_div_ps(_mm256_set1_ps(1.0), determinant);
+        let to_origin = sub(self.packet.origin, at(&block.corner));
+        let u = _mm256_mul_ps(dot(to_origin, p), inverse);
+        let q = cross(to_origin, edge1);
+        let v = _mm256_mul_ps(dot(self.packet.direction, q), inverse);
+        let t = _mm256_mul_ps(dot(edge2, q), inverse);
+        let zero = _mm256_setzero_ps();
+        for condition in [
+            _mm256_cmp_ps::<_CMP_GE_OQ>(u, zero),
+            _mm256_cmp_ps::<_CMP_GE_OQ>(v, zero),
+            _mm256_cmp_ps::<_CMP_LE_OQ>(_mm256_add_ps(u, v), _mm256_set1_ps(1.0)),
+            self.packet.between_ends(t),
+        ] {
+            hit = _mm256_and_ps(hit, condition);
+        }
+        (hit, [t, u, v])
+    }
+
+    /// Which of the rays in `asked` hit a triangle.
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    pub(super) fn any_hits(&self, geometry: &Geometry<'_>, rules: Rules, asked: u32) -> u32 {
+        let limit = _mm256_set1_ps(range(self.packet.t_max, asked).1);
+        let least = min_determinant(rules);
+        // Nodes, each with the rays that enter it.
+        let mut stack = Stack::<(u32, u32), STACK_SIZE>::new();
+        let mut open = asked;
+        let mut next = Some((0, asked));
+        while let Some((index, entering)) = next {
+            let active = entering & open;
+            if active.count_ones() <= ALONE {
+                let rays = self.packet.rays();
+                let is_hit = |&lane: &usize| any_hit::<false>(geometry, &rays[lane], rules, index);
+                open &= !lanes(active).filter(is_hit).fold(0, |hits, lane| hits | 1 << lane);
+            } else {
+                let node = &geometry.nodes[index as usize];
+                for lane in lanes(self.enter(node, limit).0 & !node.others) {
+                    let mut active = self.meet(node, lane, self.packet.t_max) & active & open;
+                    if node.triangles >> lane & 1 == 0 {
+                        stack.push_if((node.child[lane], active), active != 0);
+                        continue;
+                    }
+                    let block = block(geometry, node, lane);
+                    for lane in (0..LANES).take_while(|&lane| block.primitive[lane] != NONE) {
+                        if active == 0 {
+                            break;
+                        }
+                        let hit = _mm256_movemask_ps(self.intersect(block, lane, least).0) as u32 & active;
+                        active &= !hit;
+                        open &= !hit;
+                    }
+                }
+            }
+            next = if open == 0 { None } else { stack.pop() };
+        }
+        asked & !open
+    }
+
+    /// The nearest hits of all eight rays, which are `rays`.
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    pub(super) fn closest_hits(&self, geometry: &Geometry<'_>, rules: Rules, rays: &[Ray; LANES]) -> [Hit; LANES] {
+        let zero = _mm256_setzero_ps();
+        let none = _mm256_set1_epi32(NONE as i32);
+        let mut best = Nearest { t: self.packet.t_max, primitive: none, u: zero, v: zero };
+        let mut limit = range(best.t, ALL).1;
+        // Nodes, each with the rays that enter it and where the first does.
+        let mut stack = Stack::<(u32, u32, f32), STACK_SIZE>::new();
+        let mut next = (!geometry.nodes.is_empty()).then_some((0, ALL, 0.0));
+        while let Some((index, active, entry)) = next {
+            if entry > limit {
+                // Everything that could be hit there lies behind.
+            } else if active.count_ones() <= ALONE {
+                let mut hits = best.hits();
+                for lane in lanes(active) {
+                    hits[lane] = nearer_hit(geometry, &rays[lane], rules, index, hits[lane]);
+                }
+                best = Nearest::new(&hits);
+                limit = range(best.t, ALL).1;
+            } else {
+                let node = &geometry.nodes[index as usize];
+                let (mask, entry) = self.enter(node, _mm256_set1_ps(limit));
+                let (leaves, entries, base) = (node.triangles | node.others, store(entry), stack.size);
+                for lane in lanes(mask & leaves) {
+                    if self.meet(node, lane, best.t) != 0 {
+                        self.meet_leaf(geometry, rules, rays, node.child[lane], &mut best);
+                    }
+                }
+                limit = range(best.t, ALL).1;
+                for lane in lanes(mask & !leaves) {
+                    let active = self.meet(node, lane, best.t) & active;
+                    if active != 0 {
+                        stack.insert(base, (node.child[lane], active, entries[lane]), |above| above.2 < entries[lane]);
+                    }
+                }
+            }
+            next = stack.pop();
+        }
+        best.hits()
+    }
+
+    /// Takes the hits of a leaf that are nearer.
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[inline]
+    fn meet_leaf(&self, geometry: &Geometry<'_>, rules: Rules, rays: &[Ray; LANES], leaf: u32, best: &mut Nearest) {
+        let zero = _mm256_setzero_ps();
+        match ChildRef::unpack(leaf) {
+            ChildRef::Node(_) => {}
+            ChildRef::Triangles(index) => {
+                let block = &geometry.triangles[index as usize];
+                for lane in (0..LANES).take_while(|&lane| block.primitive[lane] != NONE) {
+                    let (hit, values) = self.intersect(block, lane, min_determinant(rules));
+                    best.take_nearer(hit, values, block.primitive[lane]);
+                }
+            }
+            ChildRef::Square(index) => {
+                let square = &geometry.squares[index as usize];
+                let (hit, t) = self.packet.meet_square(square);
+                best.take_nearer(hit, [t, zero, zero], square.primitive);
+            }
+            ChildRef::Sphere(index) => {
+                let hits = rays.map(|ray| other_hit(geometry, leaf, &ray, rules));
+                let t = load(&hits.map(|hit| hit.map_or(f32::NAN, |hit| hit.t)));
+                let hit = _mm256_cmp_ps::<_CMP_EQ_OQ>(t, t);
+                best.take_nearer(hit, [t, zero, zero], geometry.spheres[index as usize].primitive);
+            }
+        }
+    }
+}
+
+impl Nearest {
+    /// Twin of `Hit::take_nearer` in the lanes of `hit`.
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[inline]
+    fn take_nearer(&mut self, hit: __m256, [t, u, v]: [__m256; 3], primitive: u32) {
+        // A hit lies before the ray's end, so that the number of no primitive, negative here, is never compared.
+        let primitive = _mm256_set1_epi32(primitive as i32);
+        let is_first = _mm256_castsi256_ps(_mm256_cmpgt_epi32(self.primitive, primitive));
+        let is_equal = _mm256_and_ps(_mm256_cmp_ps::<_CMP_EQ_OQ>(t, self.t), is_first);
+        let is_nearer = _mm256_or_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(t, self.t), is_equal);
+        let taken = _mm256_and_ps(hit, is_nearer);
+        let take = |old: __m256, new: __m256| _mm256_blendv_ps(old, new, taken);
+        (self.t, self.u, self.v) = (take(self.t, t), take(self.u, u), take(self.v, v));
+        let number = take(_mm256_castsi256_ps(self.primitive), _mm256_castsi256_ps(primitive));
+        self.primitive = _mm256_castps_si256(number);
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    fn new(hits: &[Hit; LANES]) -> Self {
+        let primitive = load(&hits.map(|hit| f32::from_bits(hit.primitive)));
+        let [t, u, v] = [load(&hits.map(|hit| hit.t)), load(&hits.map(|hit| hit.u)), load(&hits.map(|hit| hit.v))];
+        Self { t, primitive: _mm256_castps_si256(primitive), u, v }
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    fn hits(&self) -> [Hit; LANES] {
+        let (t, u, v) = (store(self.t), store(self.u), store(self.v));
+        let primitive = store(_mm256_castsi256_ps(self.primitive)).map(f32::to_bits);
+        std::array::from_fn(|lane| Hit { t: t[lane], primitive: primitive[lane], u: u[lane], v: v[lane] })
+    }
+}
+
+/// Twin of `Tracer::closest8`.
+#[target_feature(enable = "avx2,fma,bmi1")]
+pub(super) fn closest_hits(tracer: &Tracer<'_>, rays: &[Ray; LANES]) -> [Hit; LANES] {
+    match Bundle::new(&Packet::new(rays), ALL) {
+        Some(bundle) => bundle.closest_hits(&tracer.geometry, tracer.rules, rays),
+        None => rays.map(|ray| closest_hit(&tracer.geometry, &ray, tracer.rules)),
+    }
+}
+
+/// Least and greatest value of some lanes; `asked` has a bit for each.
+#[target_feature(enable = "avx2,fma,bmi1")]
+#[inline]
+fn range(values: __m256, asked: u32) -> (f32, f32) {
+    let values = store(values);
+    let mut range = (f32::INFINITY, f32::NEG_INFINITY);
+    for lane in lanes(asked & ALL) {
+        range = (range.0.min(values[lane]), range.1.max(values[lane]));
+    }
+    range
+}
