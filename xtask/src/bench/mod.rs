@@ -1,10 +1,13 @@
 //! `cargo xtask bench`: measurements that are kept in `docs/benchmarks.md` and `benches/LOG.md`.
 
+mod equal_time;
 mod experiment;
 mod gpu;
 mod measure;
+mod physical;
 mod record;
 mod row;
+mod scaling;
 mod table;
 mod thesis;
 
@@ -17,6 +20,12 @@ pub(crate) enum Bench {
     Thesis(thesis::Args),
     /// A GPU: the thesis' scenes, rays, choice of VPLs, and how long its submissions take.
     Gpu(gpu::Args),
+    /// The physical model: the work of cuts for a thousand to a million VPLs, against the sum over all of them.
+    Scaling(scaling::Args),
+    /// The physical model: its integrators' errors after the same time, and other renderers'.
+    EqualTime(equal_time::Args),
+    /// The physical model: error against time, as a chart in docs/images.
+    Convergence(equal_time::ConvergenceArgs),
 }
 
 /// Runs a benchmark.
@@ -24,5 +33,8 @@ pub(crate) fn run(bench: &Bench) -> Result<()> {
     match bench {
         Bench::Thesis(args) => thesis::run(args),
         Bench::Gpu(args) => gpu::run(args),
+        Bench::Scaling(args) => scaling::run(args),
+        Bench::EqualTime(args) => equal_time::run(args),
+        Bench::Convergence(args) => equal_time::run_convergence(args),
     }
 }

@@ -13,7 +13,7 @@ use crate::device::processor_name;
 use crate::film::Tile;
 use crate::monitor::{Monitor, Stage};
 use crate::settings::{Integrator, Settings};
-use crate::stats::{StationDevice, Stats, timed};
+use crate::stats::{PartTime, StationDevice, Stats, timed};
 use lightcuts_kernel::rng::stream;
 use lightcuts_world::PhysicalWorld;
 use rayon::prelude::*;
@@ -81,14 +81,18 @@ impl<'a> PhysicalJob<'a> {
     fn run_passes(&mut self, tiles: &[Tile], steps: &Steps) {
         let physical = &self.settings.physical;
         let uses_vpls = physical.integrator == Integrator::Lightcuts;
-        if uses_vpls {
+        let mut pilot = PartTime::default();
+        let mut references = pilot.add(|| {
+            if !uses_vpls {
+                return Vec::new();
+            }
             self.measure_lights_per_path();
-        }
-        let mut references = if uses_vpls { self.pilot(tiles) } else { Vec::new() };
+            self.pilot(tiles)
+        });
+        self.stats.vpl_work.pilot = pilot;
         self.stats.complete = true;
         for sample in 0..self.settings.sampling.samples {
-            let vpls = if uses_vpls { self.trace_vpls(sample) } else { VplSet::default() };
-            let tree = ClusterTree::build(&vpls.lights, self.stream(REPRESENTATIVES, sample));
+            let tree = if uses_vpls { self.plant(sample) } else { ClusterTree::default() };
             let sampler = if uses_vpls {
                 let clamp = physical.clamp * self.diagonal();
                 let strategy = self.settings.gather.strategy;
@@ -182,6 +186,17 @@ impl<'a> PhysicalJob<'a> {
         self.paths += u64::from(paths);
         self.lights += set.lights.len() as u64;
         self.stats.rays.photon += set.rays;
+    }
+
+    /// Virtual lights of a pass under their tree.
+    fn plant(&mut self, sample: u32) -> ClusterTree {
+        let mut work = self.stats.vpl_work;
+        let set = work.placing.add(|| self.trace_vpls(sample));
+        let tree = work.tree.add(|| ClusterTree::build(&set.lights, self.stream(REPRESENTATIVES, sample)));
+        let bytes = size_of_val(&tree.lights[..]) + size_of_val(&tree.nodes[..]);
+        work.bytes = work.bytes.max(bytes as u64);
+        self.stats.vpl_work = work;
+        tree
     }
 
     /// Virtual lights of a pass. Their number is about what is wanted, by the experience of earlier passes; the number of paths
