@@ -95,7 +95,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     println!("\n{text}");
     if args.append {
         let subject = format!("cuts in {}, {} x {}", args.scene.display(), args.size, args.size);
-        record::append(&project::root().join("benches/LOG.md"), "", &(record::heading(None, Some(&subject)) + &text))?;
+        record::append_to_log(&subject, &text)?;
     }
     Ok(())
 }

@@ -12,7 +12,6 @@ pub(super) use convergence::run as run_convergence;
 
 use super::physical::{busy_s, render, settings};
 use super::record;
-use crate::project;
 use anyhow::{Context as _, Result};
 use case::Case;
 use clap::ValueEnum;
@@ -24,7 +23,7 @@ use report::Measured;
 const THREADS: usize = 2;
 
 /// What is compared, with the names of the tables.
-const INTEGRATORS: [(&str, Integrator); 2] = [("path", Integrator::Path), ("lightcuts", Integrator::Lightcuts)];
+const INTEGRATORS: &[(&str, Integrator)] = &[("path", Integrator::Path), ("lightcuts", Integrator::Lightcuts)];
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -63,7 +62,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         for &scene in scenes {
             let Some(case) = Case::new(scene, folder.path(), &args.reference)? else { continue };
             let mut rows = Vec::new();
-            for (name, integrator) in INTEGRATORS {
+            for &(name, integrator) in INTEGRATORS {
                 let errors = args.seconds.iter().map(|&seconds| clock.error_after(&case, integrator, seconds));
                 rows.push(Measured { name, errors: errors.collect::<Result<_>>()? });
                 eprintln!("{}, {name}: {:?}", case.title, rows.last().map(|row| &row.errors));
@@ -73,8 +72,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         text += report::REMARKS;
         println!("{text}");
         if args.append {
-            let heading = record::heading(None, Some("error after equal time, two threads"));
-            record::append(&project::root().join("benches/LOG.md"), "", &(heading + text.trim_start()))?;
+            record::append_to_log("error after equal time, two threads", &text)?;
         }
         Ok(())
     })
