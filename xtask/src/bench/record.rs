@@ -30,10 +30,15 @@ the programs run, and how the governor does on a device whose speed changes all 
 
 /// The entry for a table, of today unless a date is given.
 pub(super) fn entry(date: Option<&str>, runs: u32, table: &str) -> String {
-    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let median = if runs == 1 { "one run".to_owned() } else { format!("median of {runs} runs") };
     let heading = heading(date, None);
-    format!("{heading}{}, {threads} hardware threads; {median} per configuration.\n\n{table}", processor_name())
+    format!("{heading}{}; {median} per configuration.\n\n{table}", machine())
+}
+
+/// The processor and its threads.
+fn machine() -> String {
+    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    format!("{}, {threads} hardware threads", processor_name())
 }
 
 /// The heading of an entry: the date, today's unless one is given, the git revision, and of what the numbers are.
@@ -59,7 +64,8 @@ pub(super) fn append(path: &Path, introduction: &str, entry: &str) -> Result<()>
 
 /// Adds what was measured to the log, under today's heading.
 pub(super) fn append_to_log(subject: &str, text: &str) -> Result<()> {
-    append(&project::root().join(LOG), INTRODUCTION, &(heading(None, Some(subject)) + text.trim_start()))
+    let entry = format!("{}{}.\n\n{}", heading(None, Some(subject)), machine(), text.trim_start());
+    append(&project::root().join(LOG), INTRODUCTION, &entry)
 }
 
 fn today() -> String {

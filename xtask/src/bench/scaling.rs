@@ -176,11 +176,11 @@ fn targets(rows: &[Row]) -> String {
             format!("speed-up at {COMPARED} VPLs {speed_up:.1}, at least {LEAST_SPEED_UP}"),
             speed_up >= LEAST_SPEED_UP,
         );
-        let error = all.error;
-        line(
-            format!("its relative RMSE {:.2} %, at most {:.0} %", error * 100.0, MOST_ERROR * 100.0),
-            error <= MOST_ERROR,
-        );
+        // Which light the target is of was never said, so both are judged: cuts promise their error of all light only.
+        for (what, error) in [("all light", all.error), ("indirect light", all.indirect_error)] {
+            let (found, most) = (error * 100.0, MOST_ERROR * 100.0);
+            line(format!("its relative RMSE of {what} {found:.2} %, at most {most:.0} %"), error <= MOST_ERROR);
+        }
     }
     if let (Some(few), Some(many)) = (of(FEW), of(MANY)) {
         let growth = many.pixel_s / few.pixel_s;
@@ -203,7 +203,7 @@ mod tests {
 
     #[test]
     fn targets_are_met_or_missed() {
-        let all = Compared { pixel_s: 0.2, whole_s: 9.0, error: 0.03, indirect_error: 0.05 };
+        let all = Compared { pixel_s: 0.2, whole_s: 9.0, error: 0.01, indirect_error: 0.05 };
         let row = |wanted, pixel_s, all| Row {
             wanted,
             vpls: u64::from(wanted),
@@ -217,7 +217,7 @@ mod tests {
         let rows = [row(FEW, 1e-3, None), row(COMPARED, 1e-3, Some(all)), row(MANY, 3e-3, None)];
         let text = targets(&rows);
         let verdicts: Vec<&str> = text.lines().filter_map(|line| line.rsplit(": ").next()).collect();
-        assert_eq!(verdicts[1..], ["met", "missed", "missed", "met", "met"], "{text}");
+        assert_eq!(verdicts[1..], ["met", "met", "missed", "missed", "met", "met"], "{text}");
         assert!(table(&rows).contains("| 200.0 "), "{}", table(&rows));
     }
 }
