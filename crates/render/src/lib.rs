@@ -39,7 +39,7 @@ pub use settings::{
     Run, Sampling, Settings, SettingsError, Strategy, TomlFault, ToneMappingKind, VplPlacement, overlay, value_at,
 };
 pub use stations::{PerStation, Station, Stations};
-pub use stats::{PassTime, Rays, StationDevice, Stats, TreeVisits};
+pub use stats::{PartTime, PassTime, Rays, StationDevice, Stats, TreeVisits, VplWork};
 pub use vpl_csv::{VplCsvError, vpls_from_csv, vpls_to_csv};
 
 use cpu::CpuDevice;

@@ -36,6 +36,43 @@ pub struct Stats {
     /// How often a device did not return a result, so that its work was done again.
     #[serde(default)]
     pub device_faults: u32,
+    /// What the physical model's VPLs cost before they were gathered.
+    #[serde(default)]
+    pub vpl_work: VplWork,
+}
+
+/// Parts of the physical model's passes, all passes together.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct VplWork {
+    /// Learning how bright pixels are and how many VPLs a light path leaves.
+    pub pilot: PartTime,
+    /// Tracing light paths.
+    pub placing: PartTime,
+    /// Building trees.
+    pub tree: PartTime,
+    /// Memory of the largest pass's VPLs with their tree, in bytes.
+    pub bytes: u64,
+}
+
+/// Time of a part of a stage.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct PartTime {
+    /// Elapsed time in seconds.
+    pub wall_s: f64,
+    /// Processor time over all threads, in seconds.
+    pub cpu_s: f64,
+}
+
+impl PartTime {
+    /// Does some work and adds its time.
+    pub(crate) fn add<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        let (wall, cpu) = (Instant::now(), ProcessTime::try_now().ok());
+        let result = work();
+        let wall_s = wall.elapsed().as_secs_f64();
+        self.wall_s += wall_s;
+        self.cpu_s += cpu.and_then(|start| start.try_elapsed().ok()).map_or(wall_s, |d| d.as_secs_f64());
+        result
+    }
 }
 
 /// The device that finished a station.
@@ -113,11 +150,9 @@ impl Rays {
 
 /// Runs a stage and records its time.
 pub(crate) fn timed<T>(passes: &mut Vec<PassTime>, stage: Stage, work: impl FnOnce() -> T) -> T {
-    let (wall, cpu) = (Instant::now(), ProcessTime::try_now().ok());
-    let result = work();
-    let wall_s = wall.elapsed().as_secs_f64();
-    let cpu_s = cpu.and_then(|start| start.try_elapsed().ok()).map_or(wall_s, |d| d.as_secs_f64());
-    passes.push(PassTime { name: stage.name().into(), wall_s, cpu_s });
+    let mut time = PartTime::default();
+    let result = time.add(work);
+    passes.push(PassTime { name: stage.name().into(), wall_s: time.wall_s, cpu_s: time.cpu_s });
     result
 }
 

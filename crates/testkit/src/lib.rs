@@ -1,6 +1,8 @@
-//! Test helpers: where shared material lies, and how a test says that it skips.
+//! Test helpers: where shared material lies, how a test says that it skips, and whether samples have their density.
 //!
 //! Other people's material is not part of the project; it may lie in a folder `shared` beside the checkout.
+
+pub mod chi_square;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

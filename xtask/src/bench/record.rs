@@ -9,12 +9,36 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+/// The log of what is no table of the thesis, relative to the project's root.
+const LOG: &str = "benches/LOG.md";
+
+/// What a new log begins with.
+pub(super) const INTRODUCTION: &str = "\
+# Measurements
+
+A log, newest entry last. Each entry is what one call prints:
+
+```sh
+cargo xtask bench gpu --append          # a GPU
+cargo xtask bench scaling --append      # the physical model: the work of cuts
+cargo xtask bench equal-time --append   # the physical model: error after equal time
+```
+
+`--help` says what is measured and how. Entries of a software driver, such as llvmpipe, say nothing about GPUs: they show that
+the programs run, and how the governor does on a device whose speed changes all the time.
+";
+
 /// The entry for a table, of today unless a date is given.
 pub(super) fn entry(date: Option<&str>, runs: u32, table: &str) -> String {
-    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let median = if runs == 1 { "one run".to_owned() } else { format!("median of {runs} runs") };
     let heading = heading(date, None);
-    format!("{heading}{}, {threads} hardware threads; {median} per configuration.\n\n{table}", processor_name())
+    format!("{heading}{}; {median} per configuration.\n\n{table}", machine())
+}
+
+/// The processor and its threads.
+fn machine() -> String {
+    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    format!("{}, {threads} hardware threads", processor_name())
 }
 
 /// The heading of an entry: the date, today's unless one is given, the git revision, and of what the numbers are.
@@ -36,6 +60,12 @@ pub(super) fn append(path: &Path, introduction: &str, entry: &str) -> Result<()>
     file.write_all(text.as_bytes()).with_context(|| format!("cannot write to {}", path.display()))?;
     println!("appended to {}", path.display());
     Ok(())
+}
+
+/// Adds what was measured to the log, under today's heading.
+pub(super) fn append_to_log(subject: &str, text: &str) -> Result<()> {
+    let entry = format!("{}{}.\n\n{}", heading(None, Some(subject)), machine(), text.trim_start());
+    append(&project::root().join(LOG), INTRODUCTION, &entry)
 }
 
 fn today() -> String {

@@ -2,7 +2,7 @@
 
 use super::experiment::Case;
 use super::measure::{Configuration, Measured};
-use super::table::Table;
+use super::table::{Table, verdict};
 
 /// Most CPU seconds of lightcuts relative to plain: choosing must not cost more than a tenth of what it chooses among.
 const MAX_LIGHTCUTS_RATIO: f64 = 1.10;
@@ -56,10 +56,6 @@ impl Row {
         ];
         Self { cells }
     }
-}
-
-fn verdict(met: bool) -> &'static str {
-    if met { "met" } else { "missed" }
 }
 
 /// The table of all rows.

@@ -1,5 +1,10 @@
 //! Tables in Markdown that read well as plain text too.
 
+/// Whether a target is reached, as a word.
+pub(super) fn verdict(met: bool) -> &'static str {
+    if met { "met" } else { "missed" }
+}
+
 /// A table; every row has a cell for each column of the header.
 #[derive(Debug, Clone)]
 pub(super) struct Table {

@@ -1,4 +1,4 @@
-//! The stand-in models of `scenes/models/`, made by formulas: no third-party mesh is part of the project.
+//! The stand-in models of `scenes/models/` and a sky, made by formulas: no third-party mesh or picture is part of the project.
 
 mod field;
 mod model;
@@ -7,6 +7,7 @@ mod part;
 mod reduce;
 mod ring;
 mod ship;
+mod sky;
 mod statue;
 mod surface;
 mod vector;
@@ -51,10 +52,11 @@ const RECIPES: [Recipe; 3] = [
     },
 ];
 
-/// Writes every model, as OBJ with its MTL, into `directory`.
+/// Writes every model, as OBJ with its MTL, and the sky into `directory`.
 pub(crate) fn generate(directory: &Path) -> Result<()> {
     fs::create_dir_all(directory).with_context(|| format!("cannot create {}", directory.display()))?;
-    RECIPES.iter().try_for_each(|recipe| recipe.write(directory).with_context(|| format!("model {}", recipe.name)))
+    RECIPES.iter().try_for_each(|recipe| recipe.write(directory).with_context(|| format!("model {}", recipe.name)))?;
+    sky::write(directory)
 }
 
 impl Recipe {

@@ -21,6 +21,8 @@ mod prose;
 mod provenance;
 mod section;
 
+pub use chart::curves::{Line, LogChart, Mark, Point};
+
 use crate::layout::Section;
 use crate::record::Header;
 use crate::results::{Results, ResultsError};

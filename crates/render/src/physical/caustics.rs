@@ -60,7 +60,7 @@ impl CausticMap {
         let (lower, upper) = scene.world.bounds;
         let radius = radius_of(pass) * (upper - lower).length();
         let left = trace_light(scene, origins, paths, stream, SPECULAR, photon);
-        Self { rays: left.rays, ..Self::sort(left.items, radius) }
+        Self { rays: left.rays, ..Self::sort(&left.items, radius) }
     }
 
     pub(crate) fn rays(&self) -> u64 {
@@ -72,19 +72,19 @@ impl CausticMap {
     }
 
     /// Sorts photons by the numbers of their cells.
-    fn sort(photons: Vec<Photon>, radius: f32) -> Self {
+    fn sort(photons: &[Photon], radius: f32) -> Self {
         let numbers = (photons.len() * 2).next_power_of_two();
         let number = |photon: &Photon| number_of(photon_cell(photon.position, 2.0 * radius), numbers);
         let mut starts = vec![0; numbers + 1];
-        for photon in &photons {
+        for photon in photons {
             starts[number(photon) + 1] += 1;
         }
         for k in 0..numbers {
             starts[k + 1] += starts[k];
         }
         let mut next = starts.clone();
-        let mut sorted = photons.clone();
-        for photon in &photons {
+        let mut sorted = photons.to_vec();
+        for photon in photons {
             let place = &mut next[number(photon)];
             sorted[*place as usize] = *photon;
             *place += 1;
@@ -172,7 +172,7 @@ mod tests {
                 photon_at(Vec3::new(x, y, z) - 0.5)
             })
             .collect();
-        let map = CausticMap::sort(photons.clone(), 0.07);
+        let map = CausticMap::sort(&photons, 0.07);
         for k in 0..200 {
             let [x, y, z, _] = random4(k, 1, 0, 3);
             let point = Vec3::new(x, y, z) - 0.5;

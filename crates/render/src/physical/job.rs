@@ -16,8 +16,7 @@ use crate::cpu::Simd;
 use crate::device::processor_name;
 use crate::monitor::{Monitor, Stage};
 use crate::settings::Settings;
-use crate::stats::{StationDevice, Stats, timed};
-use cpu_time::ProcessTime;
+use crate::stats::{PartTime, StationDevice, Stats, timed};
 use lightcuts_kernel::rng::stream;
 use lightcuts_kernel::virtual_light::VirtualLight;
 use lightcuts_world::PhysicalWorld;
@@ -93,11 +92,15 @@ impl<'a> PhysicalJob<'a> {
 
     fn run_passes(&mut self, steps: &Steps) {
         let uses_vpls = self.plan.techniques().iter().any(|technique| technique.uses_vpls());
-        if uses_vpls {
-            self.prepare_vpls();
-        }
-        // What cuts go by until there is a pass; a first pass of path tracing brings it by itself.
-        let pilot = if self.plan.techniques()[0].uses_vpls() { self.pilot() } else { Vec::new() };
+        let mut before = PartTime::default();
+        let pilot = before.add(|| {
+            if uses_vpls {
+                self.prepare_vpls();
+            }
+            // What cuts go by until there is a pass; a first pass of path tracing brings it by itself.
+            if self.plan.techniques()[0].uses_vpls() { self.pilot() } else { Vec::new() }
+        });
+        self.stats.vpl_work.pilot = before;
         self.stats.complete = true;
         let wanted = u64::from(self.settings.sampling.samples) * self.mixture.tiles().len() as u64;
         let mut taken = 0;
@@ -134,7 +137,7 @@ impl<'a> PhysicalJob<'a> {
     /// One pass; returns whether it came to its end.
     fn run_pass(&mut self, pass: u32, tasks: &[Task], pilot: &[f32], steps: &Steps) -> bool {
         let techniques = self.plan.techniques().to_vec();
-        let tree = tasks.iter().any(|task| techniques[task.technique].uses_vpls()).then(|| self.make_tree(pass));
+        let tree = tasks.iter().any(|task| techniques[task.technique].uses_vpls()).then(|| self.plant(pass));
         let caustics = self.shoot_photons(pass);
         let references = if pass == 0 { pilot } else { self.mixture.references() };
         let clamp = self.clamp();
@@ -209,17 +212,6 @@ impl<'a> PhysicalJob<'a> {
         mixture.references().to_vec()
     }
 
-    /// Virtual lights of a pass and the tree over them.
-    fn make_tree(&mut self, pass: u32) -> ClusterTree {
-        let clock = ProcessTime::try_now().ok();
-        let vpls = self.trace_vpls(pass);
-        let tree = ClusterTree::build(&vpls, self.stream(REPRESENTATIVES, pass));
-        let seconds = clock.and_then(|start| start.try_elapsed().ok()).map_or(0.0, |time| time.as_secs_f64());
-        let image = self.settings.image;
-        self.plan.learn_vpls(seconds, image.width as usize * image.height as usize);
-        tree
-    }
-
     /// What light paths leave, before any pass: how many virtual lights, and how much they bring.
     fn prepare_vpls(&mut self) {
         let Some(origins) = &self.origins else { return };
@@ -240,6 +232,21 @@ impl<'a> PhysicalJob<'a> {
                 rejection.learn(&left.items);
             }
         }
+    }
+
+    /// Virtual lights of a pass under their tree.
+    fn plant(&mut self, pass: u32) -> ClusterTree {
+        let mut work = self.stats.vpl_work;
+        let before = work.placing.cpu_s + work.tree.cpu_s;
+        let lights = work.placing.add(|| self.trace_vpls(pass));
+        let tree = work.tree.add(|| ClusterTree::build(&lights, self.stream(REPRESENTATIVES, pass)));
+        let bytes = size_of_val(&tree.lights[..]) + size_of_val(&tree.nodes[..]);
+        work.bytes = work.bytes.max(bytes as u64);
+        self.stats.vpl_work = work;
+        let image = self.settings.image;
+        self.plan
+            .learn_vpls(work.placing.cpu_s + work.tree.cpu_s - before, image.width as usize * image.height as usize);
+        tree
     }
 
     /// Virtual lights of a pass. Their number is about what is wanted, by the experience of earlier passes; the number of paths

@@ -266,7 +266,7 @@ impl Mixture {
             })
         };
         let own: Vec<Known> = self.tiles.iter().zip(&canvas.probes).map(of_tile).collect();
-        let all = own.iter().fold(Known::default(), |sum, known| sum.with(known));
+        let all = own.iter().fold(Known::default(), Known::with);
         own.iter().map(|own| own.variance(&all).map(|variance| variance * gain)).collect()
     }
 

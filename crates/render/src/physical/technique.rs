@@ -49,12 +49,10 @@ impl Technique {
         randoms: &mut Randoms,
         counts: &mut Counts,
     ) -> Sampled {
-        match (self, &pass.vpls) {
-            (Self::Vpls(strategy), Some(vpls)) => vpls.sample(pass, strategy, ray, cone, pixel, randoms, counts),
-            _ => {
-                let (radiance, first) = trace_path(pass, ray, cone, randoms, counts);
-                Sampled { radiance, first, cut: 0.0, bound: 0.0 }
-            }
+        if let (Self::Vpls(strategy), Some(vpls)) = (self, &pass.vpls) {
+            return vpls.sample(pass, strategy, ray, cone, pixel, randoms, counts);
         }
+        let (radiance, first) = trace_path(pass, ray, cone, randoms, counts);
+        Sampled { radiance, first, cut: 0.0, bound: 0.0 }
     }
 }

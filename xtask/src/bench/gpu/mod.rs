@@ -68,20 +68,6 @@ pub(crate) struct Args {
     date: Option<String>,
 }
 
-/// What a new log begins with.
-const INTRODUCTION: &str = "\
-# Measurements of GPUs
-
-A log, newest entry last. Each entry is what one call prints:
-
-```sh
-cargo xtask bench gpu --append
-```
-
-`cargo xtask bench gpu --help` says what is measured and how. Entries of a software driver, such as llvmpipe, say nothing
-about GPUs: they show that the programs run, and how the governor does on a device whose speed changes all the time.
-";
-
 type Section = fn(&Setup, &mut Log) -> Result<String>;
 
 /// What is printed, in order.
@@ -113,7 +99,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         eprintln!("[{title}: {:.0} s]", start.elapsed().as_secs_f64());
     }
     if let Some(path) = &args.append {
-        record::append(&project::root().join(path), INTRODUCTION, &entry)?;
+        record::append(&project::root().join(path), record::INTRODUCTION, &entry)?;
     }
     ensure!(failed.is_empty(), "not measured: {}", failed.join("; "));
     Ok(())

@@ -4,40 +4,52 @@ use super::scale::{self, Scale};
 use super::{Canvas, Drawn, FRAME, GRID, INK, Letters, PAPER, SOFT_INK, color, svg, text_width};
 use plotters::style::text_anchor::HPos;
 
-/// A line chart.
-pub(crate) struct LogChart {
-    pub(crate) x_title: String,
-    pub(crate) y_title: String,
-    pub(crate) lines: Vec<Line>,
-    pub(crate) mark: Option<Mark>,
+/// A line chart with two logarithmic axes.
+pub struct LogChart {
+    /// What x is, with its unit.
+    pub x_title: String,
+    /// What y is, with its unit.
+    pub y_title: String,
+    /// The curves, told apart by colours and signs in their order.
+    pub lines: Vec<Line>,
+    /// A place that is pointed out.
+    pub mark: Option<Mark>,
 }
 
 /// A curve.
-pub(crate) struct Line {
-    pub(crate) title: String,
+pub struct Line {
+    /// Its name in the legend.
+    pub title: String,
     /// In the order of x.
-    pub(crate) points: Vec<Point>,
+    pub points: Vec<Point>,
 }
 
 /// A place of a curve; all above 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Point {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) least: f64,
-    pub(crate) greatest: f64,
+pub struct Point {
+    /// Place along the axis.
+    pub x: f64,
+    /// Height.
+    pub y: f64,
+    /// Lower end of the bar through it.
+    pub least: f64,
+    /// Upper end.
+    pub greatest: f64,
 }
 
-/// A place with a name.
-pub(crate) struct Mark {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-    pub(crate) label: String,
+/// A place with a name: a crossover.
+pub struct Mark {
+    /// Place along the axis.
+    pub x: f64,
+    /// Height.
+    pub y: f64,
+    /// What stands beside it.
+    pub label: String,
 }
 
 impl LogChart {
-    /// Draws it. The message is the library's.
-    pub(crate) fn to_svg(&self) -> Result<String, String> {
+    /// The chart as an SVG document. The message, if it cannot be drawn, is the library's.
+    pub fn to_svg(&self) -> Result<String, String> {
         svg(|canvas| self.draw(canvas))
     }
 

@@ -117,6 +117,19 @@ pub(super) fn room(occluded: bool) -> PhysicalScene {
     }
 }
 
+/// The room with gloss of every kind that is gathered from virtual lights: a floor of rough metal, a Phong wall, a plastic ball.
+pub(super) fn glossy_room() -> PhysicalScene {
+    let mut scene = room(false);
+    let metal = Scattering::Conductor { eta: Vec3::new(0.2, 0.9, 1.2), k: Vec3::new(3.9, 2.4, 2.2), roughness: 0.5 };
+    let phong =
+        Scattering::Phong { diffuse: Vec3::splat(0.4).into(), specular: Vec3::splat(0.4).into(), exponent: 30.0 };
+    for (object, scattering) in [(0, metal), (2, phong)] {
+        scene.objects[object].material = SurfaceId(scene.materials.len() as u32);
+        scene.materials.push(SurfaceDesc { scattering, ..SurfaceDesc::default() });
+    }
+    scene
+}
+
 /// A box of 0.3 x 0.6 x 0.3, standing on the floor.
 pub(super) fn tall_box() -> MeshDesc {
     let corner = |k: u32| Vec3::new((k & 1) as f32 - 0.5, (k >> 1 & 1) as f32, (k >> 2) as f32 - 0.5);

@@ -3,14 +3,13 @@
 use bytemuck::Zeroable;
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{
-    ALL_LOBES, Bsdf, CONDUCTOR, DIELECTRIC, GLOSSY, MATT, MIRROR, PHONG, PLASTIC, Transport, bsdf_pdf, bsdf_value,
-    lobes_of, sample_bsdf,
+    ALL_LOBES, Bsdf, CONDUCTOR, DIELECTRIC, GLOSSY, MATT, MIRROR, PHONG, PLASTIC, SPECULAR, Transport, bsdf_pdf,
+    bsdf_value, lobes_of, sample_bsdf,
 };
 use lightcuts_kernel::energy::energy_tables;
+use lightcuts_kernel::fresnel::fresnel_dielectric;
 use lightcuts_kernel::rng::random4;
-use lightcuts_kernel::sampling::sin_cos_turns;
-use lightcuts_kernel::texture::arctangent;
-use std::f32::consts::PI;
+use lightcuts_testkit::chi_square::{ChiSquareTests, DirectionCells};
 
 /// Materials of every kind that reflect or pass all light, each with its tables.
 fn white() -> Vec<(&'static str, Bsdf, Vec<f32>)> {
@@ -69,66 +68,75 @@ fn white_furnace() {
     assert_eq!(complaints, 0);
 }
 
-/// Counts of samples in cells of equal solid angle agree with the integral of the density over them (Pearson's chi-square
-/// test at a significance of 1e-4 for all materials and views together).
+/// Directions are drawn with their density; where single ones are drawn as well, with what it leaves of their chance.
 #[test]
 fn samples_have_their_density() {
-    const RINGS: usize = 16;
-    const SECTORS: usize = 24;
+    let mut tests = ChiSquareTests::default();
     for (name, bsdf, tables) in white() {
-        if lobes_of(&bsdf) & (MATT | GLOSSY) == 0 {
-            continue;
-        }
         for wo in views(&bsdf) {
-            let cell = |wi: Vec3| {
-                let ring = (((wi.z * 0.5 + 0.5) * RINGS as f32) as usize).min(RINGS - 1);
-                let turn = arctangent(wi.y, wi.x) / (2.0 * PI) + 0.5;
-                ring * SECTORS + ((turn * SECTORS as f32) as usize).min(SECTORS - 1)
-            };
-            let n = 400_000;
-            let mut counts = vec![0.0_f64; RINGS * SECTORS];
-            for k in 0..n {
-                if let Some(s) = sample_bsdf(&bsdf, &tables, ALL_LOBES, wo, random3(k, 1), Transport::Radiance)
-                    && s.pdf > 0.0
-                {
-                    counts[cell(s.wi)] += 1.0;
-                    let again = bsdf_pdf(&bsdf, &tables, ALL_LOBES, wo, s.wi);
-                    assert!((again / s.pdf - 1.0).abs() < 1e-3, "{name}: {again} {}", s.pdf);
+            let cells = DirectionCells::new(Vec3::Z, -1.0, 16, 24);
+            let (n, mut single, mut none) = (400_000, 0.0, 0.0);
+            let directions = (0..n).filter_map(|k| {
+                let sample = sample_bsdf(&bsdf, &tables, ALL_LOBES, wo, random3(k, 1), Transport::Radiance);
+                let Some(sample) = sample else {
+                    none += 1.0;
+                    return None;
+                };
+                if sample.lobe == SPECULAR {
+                    single += 1.0;
+                    return None;
                 }
+                let again = bsdf_pdf(&bsdf, &tables, ALL_LOBES, wo, sample.wi);
+                assert!(sample.pdf > 0.0 && (again / sample.pdf - 1.0).abs() < 1e-3, "{name}: {again} {}", sample.pdf);
+                Some(sample.wi)
+            });
+            let counts = cells.count(directions);
+            let name = format!("{name} at {}", wo.z);
+            if lobes_of(&bsdf) & (MATT | GLOSSY) == 0 {
+                assert_eq!(single, f64::from(n), "{name}");
+                continue;
             }
-            // Integrals by midpoints, many in each cell.
-            let mut expected = vec![0.0_f64; RINGS * SECTORS];
-            let (rows, columns) = (RINGS * 250, SECTORS * 12);
-            for row in 0..rows {
-                for column in 0..columns {
-                    let z = (row as f32 + 0.5) / rows as f32 * 2.0 - 1.0;
-                    let (sin, cos) = sin_cos_turns((column as f32 + 0.5) / columns as f32);
-                    let r = (1.0 - z * z).sqrt();
-                    let wi = Vec3::new(r * cos, r * sin, z);
-                    expected[cell(wi)] += f64::from(bsdf_pdf(&bsdf, &tables, ALL_LOBES, wo, wi))
-                        * (4.0 * std::f64::consts::PI / (rows * columns) as f64)
-                        * f64::from(n);
-                }
+            let integrals = cells.integrals([250, 12], |wi| bsdf_pdf(&bsdf, &tables, ALL_LOBES, wo, wi));
+            let expected: Vec<f64> = integrals.iter().map(|of| of * f64::from(n)).collect();
+            // The quadrature has an error of its own, which sharp lobes show.
+            tests.compare(&name, &counts, &expected, 0.01);
+            if single > 0.0 {
+                let rest = f64::from(n) - expected.iter().sum::<f64>() - none;
+                tests.compare(
+                    format!("{name}, lobes"),
+                    &[single, counts.iter().sum()],
+                    &[rest, f64::from(n) - rest],
+                    0.0,
+                );
             }
-            let (mut statistic, mut freedom, mut few, mut few_expected) = (0.0, 0.0, 0.0, 0.0);
-            for (&count, &wanted) in counts.iter().zip(&expected) {
-                if wanted < 50.0 {
-                    (few, few_expected) = (few + count, few_expected + wanted);
-                } else {
-                    // The quadrature has an error of its own, which sharp lobes show.
-                    let slack = 0.01 * wanted;
-                    statistic += ((count - wanted).abs() - slack).max(0.0).powi(2) / wanted;
-                    freedom += 1.0;
-                }
-            }
-            let slack = 6.0 * few_expected.max(100.0).sqrt() + 0.02 * few_expected;
-            assert!((few - few_expected).abs() < slack, "{name} at {}: {few} {few_expected}", wo.z);
-            // Wilson-Hilferty: a normal deviate of the chi-square variable.
-            let deviate =
-                ((statistic / freedom).cbrt() - (1.0 - 2.0 / (9.0 * freedom))) / (2.0_f64 / (9.0 * freedom)).sqrt();
-            assert!(deviate < 5.0, "{name} at {}: chi-square {statistic:.0} of {freedom}", wo.z);
         }
     }
+    tests.check();
+}
+
+/// Smooth glass reflects with the chance of Fresnel's equations and refracts with the rest.
+#[test]
+fn smooth_glass_chooses_by_fresnel() {
+    let glass = Bsdf { kind: DIELECTRIC, specular: Vec3::ONE, ior: 1.5, ..Bsdf::zeroed() };
+    let mut tests = ChiSquareTests::default();
+    for wo in views(&glass) {
+        let eta = if wo.z < 0.0 { 1.0 / glass.ior } else { glass.ior };
+        let n = 100_000;
+        let mut counts = [0.0; 2];
+        for k in 0..n {
+            let sample = sample_bsdf(&glass, &[], ALL_LOBES, wo, random3(k, 5), Transport::Radiance);
+            let sample = sample.expect("smooth glass sends all light on");
+            counts[usize::from(sample.wi.z * wo.z < 0.0)] += 1.0;
+        }
+        let reflected = f64::from(fresnel_dielectric(wo.z.abs(), eta));
+        let expected = [reflected, 1.0 - reflected].map(|chance| chance * f64::from(n));
+        if reflected == 1.0 {
+            assert_eq!(counts, expected);
+        } else {
+            tests.compare(format!("glass at {}", wo.z), &counts, &expected, 0.0);
+        }
+    }
+    tests.check();
 }
 
 /// f(wo, wi) = f(wi, wo), in radiance times the square of the refractive index where light is refracted.
