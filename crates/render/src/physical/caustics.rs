@@ -1,14 +1,15 @@
-//! Caustics: light that comes through single directions (mirrors, smooth glass) onto other surfaces, by photons (Jensen 1996).
+//! Caustics: light that comes by focused lobes (mirrors, smooth glass and metal) onto other surfaces, by photons (Jensen 1996).
 //!
-//! Paths from the camera meet it by chance only, and that of point lights never. Each pass shoots photons anew and counts them in
+//! Paths from the camera meet it by chance only, and that of point lights in mirrors never. Each pass shoots photons anew and counts them in
 //! a disk around each point; the disk shrinks from pass to pass, so that the mean of all passes converges (Knaus & Zwicker 2011,
 //! "Progressive Photon Mapping: A Probabilistic Approach"). What photons bring is left out of paths: see `Before`.
 
 use super::emission::Origins;
 use super::light_path::{Arrival, trace_light};
+use super::lightcuts::LEAST_GATHERED_ALPHA;
 use super::scene::{Interaction, Scene};
 use glam::{IVec3, Vec3};
-use lightcuts_kernel::bsdf::{GLOSSY, MATT, SPECULAR, lobes_of};
+use lightcuts_kernel::bsdf::{CONDUCTOR, DIELECTRIC, GLOSSY, MATT, SPECULAR, lobes_of};
 use lightcuts_kernel::photon_gather::photon_cell;
 use lightcuts_kernel::rng::hash4;
 use std::f32::consts::PI;
@@ -25,7 +26,7 @@ const LEAST_AGREEMENT: f32 = 0.7;
 /// How far a photon may be above or below the disk, relative to its radius.
 const THICKNESS: f32 = 0.3;
 
-/// Light that came through single directions.
+/// Light that came by focused lobes.
 #[derive(Debug, Clone, Copy)]
 struct Photon {
     position: Vec3,
@@ -59,7 +60,7 @@ impl CausticMap {
     pub(crate) fn shoot(scene: &Scene<'_>, origins: &Origins, paths: u32, stream: u32, pass: u32) -> Self {
         let (lower, upper) = scene.world.bounds;
         let radius = radius_of(pass) * (upper - lower).length();
-        let left = trace_light(scene, origins, paths, stream, SPECULAR, photon);
+        let left = trace_light(scene, origins, paths, stream, is_focused, photon);
         Self { rays: left.rays, ..Self::sort(&left.items, radius) }
     }
 
@@ -94,7 +95,7 @@ impl CausticMap {
 
     /// Light that photons bring to a point; `value` is the BSDF times the cosine for a direction.
     pub(crate) fn gather(&self, at: &Interaction, value: impl Fn(Vec3) -> Vec3) -> Vec3 {
-        if self.photons.is_empty() || lobes_of(&at.bsdf) & (MATT | GLOSSY) == 0 {
+        if self.photons.is_empty() || !spreads(at) {
             return Vec3::ZERO;
         }
         let radius_sq = self.radius * self.radius;
@@ -142,12 +143,26 @@ fn number_of(cell: IVec3, numbers: usize) -> usize {
     hash as usize & (numbers - 1)
 }
 
-/// The photon of light that arrives: it came through single directions to a surface that spreads it.
+/// Whether a surface is a metal or glass that is so smooth that paths would find lights in it by chance.
+fn is_smooth(at: &Interaction) -> bool {
+    matches!(at.bsdf.kind, CONDUCTOR | DIELECTRIC) && at.bsdf.alpha < LEAST_GATHERED_ALPHA
+}
+
+/// Whether a lobe of a surface sends light in a single direction, or nearly so.
+pub(crate) fn is_focused(at: &Interaction, lobe: u32) -> bool {
+    lobe == SPECULAR || is_smooth(at)
+}
+
+/// Whether a surface shows caustics: it has a lobe that is not focused.
+pub(crate) fn spreads(at: &Interaction) -> bool {
+    lobes_of(&at.bsdf) & (MATT | GLOSSY) != 0 && !is_smooth(at)
+}
+
+/// The photon of light that arrives: it came by focused lobes to a surface that spreads it.
 fn photon(arrival: &Arrival<'_>) -> Option<Photon> {
     let Arrival { at, from, power, bounces, .. } = *arrival;
-    let is_spread = lobes_of(&at.bsdf) & (MATT | GLOSSY) != 0;
     let side = 1.0_f32.copysign(at.face.dot(from));
-    (bounces > 0 && is_spread && power.is_finite()).then(|| Photon {
+    (bounces > 0 && spreads(at) && power.is_finite()).then(|| Photon {
         position: at.point,
         normal: at.face * side,
         direction: from,

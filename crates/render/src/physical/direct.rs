@@ -1,9 +1,10 @@
 //! Light straight from the scene's lights: one of them is drawn, and weighed against meeting it by chance.
 
+use super::caustics::{is_focused, spreads};
 use super::pass::Counts;
 use super::scene::{Interaction, Scene};
 use glam::Vec3;
-use lightcuts_kernel::bsdf::{GLOSSY, MATT, SPECULAR, lobes_of};
+use lightcuts_kernel::bsdf::{GLOSSY, MATT, lobes_of};
 use lightcuts_kernel::emitter::{Emitter, RECTANGLE_LIGHT, SPHERE_LIGHT, TRIANGLE_LIGHT, emitter_pdf, sample_emitter};
 use lightcuts_kernel::emitter_tree::{Lit, leaf_probability, sample_emitter_tree};
 use lightcuts_kernel::environment::{environment_pdf, environment_radiance, sample_environment};
@@ -38,8 +39,10 @@ pub(crate) struct Before {
     pub(crate) pdf: f32,
     /// Lights that were drawn there.
     pub(crate) lights: u32,
-    /// Whether photons bring what is met by chance behind a single direction.
-    pub(crate) is_mapped: bool,
+    /// Whether it took a focused lobe.
+    pub(crate) is_focused: bool,
+    /// Whether it took a lobe before that spreads light, where photons bring caustics.
+    pub(crate) is_spread: bool,
 }
 
 impl Before {
@@ -47,18 +50,19 @@ impl Before {
     /// the camera sees, or that comes from a single direction, cannot be drawn; caustics that photons bring count nothing.
     pub(crate) fn weight(before: Option<&Self>, light_pdf: impl Fn(&Interaction) -> f32) -> f32 {
         match before {
+            Some(before) if before.is_spread && before.is_focused => 0.0,
             Some(before) if before.pdf > 0.0 => {
                 power_heuristic(before.pdf, light_pdf(&before.at) * before.lights as f32)
             }
-            Some(before) if before.is_mapped => 0.0,
             _ => 1.0,
         }
     }
 
-    /// Whether photons bring the light behind single directions once a path went on by a lobe: such light is a caustic if the path
-    /// was spread at any vertex before.
-    pub(crate) fn maps(before: Option<&Self>, lobe: u32, has_photons: bool) -> bool {
-        has_photons && (lobe != SPECULAR || before.is_some_and(|before| before.is_mapped))
+    /// Whether a lobe by which a path goes on is focused, and whether that or an earlier one spread light. What is met by focused
+    /// lobes behind one that spreads is a caustic, which photons bring.
+    pub(crate) fn course(before: Option<&Self>, at: &Interaction, lobe: u32, has_photons: bool) -> (bool, bool) {
+        let is_focused = is_focused(at, lobe);
+        (is_focused, has_photons && (!is_focused || before.is_some_and(|before| before.is_spread)))
     }
 }
 
@@ -70,6 +74,8 @@ pub(crate) struct DirectLight<'a> {
     pub(crate) lobes: u32,
     /// Number of lights.
     pub(crate) lights: u32,
+    /// Where the path came from.
+    pub(crate) before: Option<&'a Before>,
 }
 
 impl DirectLight<'_> {
@@ -80,7 +86,8 @@ impl DirectLight<'_> {
         counts: &mut Counts,
         value: impl Fn(Vec3) -> Vec3,
     ) -> Vec3 {
-        if self.lobes & lobes_of(&self.at.bsdf) & (MATT | GLOSSY) == 0 {
+        let is_caustic = !spreads(self.at) && self.before.is_some_and(|before| before.is_spread);
+        if self.lobes & lobes_of(&self.at.bsdf) & (MATT | GLOSSY) == 0 || is_caustic {
             return Vec3::ZERO;
         }
         let number = self.lights as f32;

@@ -41,13 +41,13 @@ pub(crate) struct Arrival<'a> {
 }
 
 /// Traces a fixed number of light paths and collects what `leave` makes of each arrival. Their number, never that of what they
-/// leave, is what power is divided by. Paths go on after scattering in one of `lobes` only.
+/// leave, is what power is divided by. Paths go on from a place by a lobe only where `follows` says so.
 pub(crate) fn trace_light<T: Send>(
     scene: &Scene<'_>,
     origins: &Origins,
     paths: u32,
     stream: u32,
-    lobes: u32,
+    follows: impl Fn(&Interaction, u32) -> bool + Sync,
     leave: impl Fn(&Arrival<'_>) -> Option<T> + Sync,
 ) -> Left<T> {
     let chunks = paths.div_ceil(CHUNK);
@@ -57,7 +57,7 @@ pub(crate) fn trace_light<T: Send>(
             let mut left = Left::default();
             for path in chunk * CHUNK..paths.min((chunk + 1) * CHUNK) {
                 let mut randoms = Randoms::new(0, path, stream);
-                follow(scene, origins, &mut randoms, 1.0 / paths as f32, lobes, &leave, &mut left);
+                follow(scene, origins, &mut randoms, 1.0 / paths as f32, &follows, &leave, &mut left);
             }
             left
         })
@@ -75,7 +75,7 @@ fn follow<T>(
     origins: &Origins,
     randoms: &mut Randoms,
     share: f32,
-    lobes: u32,
+    follows: impl Fn(&Interaction, u32) -> bool,
     leave: impl Fn(&Arrival<'_>) -> Option<T>,
     left: &mut Left<T>,
 ) {
@@ -90,7 +90,7 @@ fn follow<T>(
         let [survival, r0, r1, _] = randoms.next();
         left.items.extend(leave(&Arrival { at: &at, from: -ray.direction, power, bounces, random: [r0, r1] }));
         let Some(sample) = at.sample(tables, ALL_LOBES, [u, v, choice], Transport::Importance) else { return };
-        if sample.lobe & lobes == 0 {
+        if !follows(&at, sample.lobe) {
             return;
         }
         let factor = sample.weight * shading_correction(&at, -ray.direction, sample.wi);

@@ -18,7 +18,7 @@ use lightcuts_kernel::ray::Ray;
 use std::cell::RefCell;
 
 /// Narrower lobes are followed by paths: too few virtual lights lie in them.
-const LEAST_GATHERED_ALPHA: f32 = 0.15;
+pub(crate) const LEAST_GATHERED_ALPHA: f32 = 0.15;
 /// The same of Phong's.
 const GREATEST_GATHERED_EXPONENT: f32 = 60.0;
 
@@ -136,7 +136,7 @@ impl Gathering<'_> {
             return None;
         }
         let lights = if walk.is_first { FIRST_LIGHTS } else { 1 };
-        let direct = DirectLight { scene, at: &at, lobes, lights };
+        let direct = DirectLight { scene, at: &at, lobes, lights, before: walk.before.as_ref() };
         let random = || {
             let [u, v, choice, _] = randoms.next();
             [u, v, choice]
@@ -233,13 +233,13 @@ impl Walk {
         let tables = &scene.world.tables[..];
         let Drawn { lobes, lights, random, has_photons } = *drawn;
         let sample = at.sample(tables, lobes, random, Transport::Radiance)?;
-        let is_mapped = Before::maps(self.before.as_ref(), sample.lobe, has_photons);
+        let (is_focused, is_spread) = Before::course(self.before.as_ref(), at, sample.lobe, has_photons);
         let next = Self {
             matt: Vec3::ZERO,
             compensated: Vec3::ZERO,
             rest: Vec3::ZERO,
             is_first: self.is_first,
-            before: Some(Before { at: *at, pdf: sample.pdf, lights, is_mapped }),
+            before: Some(Before { at: *at, pdf: sample.pdf, lights, is_focused, is_spread }),
             ray: at.ray(sample.wi, f32::INFINITY),
             cone: if sample.pdf == 0.0 { self.cone.after(distance) } else { Cone::NONE },
             vertex: self.vertex + 1,

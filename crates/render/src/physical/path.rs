@@ -45,7 +45,7 @@ pub(crate) fn trace_path(
         }
         let [u, v, choice, survival] = randoms.next();
         let value = |direction| at.scattered(tables, ALL_LOBES, direction, Transport::Radiance);
-        let direct = DirectLight { scene, at: &at, lobes: ALL_LOBES, lights: 1 };
+        let direct = DirectLight { scene, at: &at, lobes: ALL_LOBES, lights: 1, before: before.as_ref() };
         let direct = direct.estimate(|| [u, v, choice], counts, value);
         sum.add(vertex + 1, throughput * direct);
         if let Some(caustics) = caustics {
@@ -65,8 +65,8 @@ pub(crate) fn trace_path(
         }
         // Behind a matt vertex textures are looked up at points, as light paths do.
         cone = if sample.lobe == SPECULAR { cone.after(hit.t) } else { Cone::NONE };
-        let is_mapped = Before::maps(before.as_ref(), sample.lobe, caustics.is_some());
-        before = Some(Before { at, pdf: sample.pdf, lights: 1, is_mapped });
+        let (is_focused, is_spread) = Before::course(before.as_ref(), &at, sample.lobe, caustics.is_some());
+        before = Some(Before { at, pdf: sample.pdf, lights: 1, is_focused, is_spread });
         ray = at.ray(sample.wi, f32::INFINITY);
         counts.bounces += 1;
     }

@@ -4,7 +4,7 @@ use super::emission::Origins;
 use super::light_path::{Arrival, Left, trace_light};
 use super::rejection::{Judged, Rejection};
 use super::scene::Scene;
-use lightcuts_kernel::bsdf::{ALL_LOBES, MATT, PLASTIC, energy_at, lobes_of, mean_energy};
+use lightcuts_kernel::bsdf::{MATT, PLASTIC, energy_at, lobes_of, mean_energy};
 use lightcuts_kernel::virtual_light::{VirtualLight, pack_direction, virtual_table};
 use std::f32::consts::PI;
 
@@ -17,13 +17,20 @@ pub(crate) fn trace_vpls(
     stream: u32,
 ) -> Left<Judged> {
     let tables = &scene.world.tables[..];
-    trace_light(scene, origins, paths, stream, ALL_LOBES, |arrival| {
-        let light = virtual_light(arrival, tables)?;
-        Some(match rejection {
-            Some(rejection) => rejection.judge(scene, light, arrival.random),
-            None => Judged::kept(light),
-        })
-    })
+    trace_light(
+        scene,
+        origins,
+        paths,
+        stream,
+        |_, _| true,
+        |arrival| {
+            let light = virtual_light(arrival, tables)?;
+            Some(match rejection {
+                Some(rejection) => rejection.judge(scene, light, arrival.random),
+                None => Judged::kept(light),
+            })
+        },
+    )
 }
 
 /// The virtual light of power that arrives; `None` if nothing is passed on evenly.

@@ -194,7 +194,7 @@ pub(super) fn variants() -> Vec<(&'static str, PhysicalScene)> {
     ]
 }
 
-/// The room with a glass ball, a mirror for a wall and a floor under a smooth coat.
+/// The room with a glass ball, a mirror and a metal for walls and a floor under a smooth coat.
 pub(super) fn caustic_room() -> PhysicalScene {
     let mut scene = room(false);
     scene.materials[4].scattering = Scattering::Dielectric { ior: 1.5, roughness: 0.0, transmittance: Vec3::ONE };
@@ -204,6 +204,12 @@ pub(super) fn caustic_room() -> PhysicalScene {
         ..SurfaceDesc::default()
     });
     scene.objects[0].material = SurfaceId(5);
+    // A metal that is nearly smooth.
+    scene.materials.push(SurfaceDesc {
+        scattering: Scattering::Conductor { eta: Vec3::splat(0.2), k: Vec3::splat(3.0), roughness: 0.3 },
+        ..SurfaceDesc::default()
+    });
+    scene.objects[4].material = SurfaceId(6);
     scene
 }
 
