@@ -1,8 +1,8 @@
 //! Caustics: light that comes by focused lobes (mirrors, smooth glass and metal) onto other surfaces, by photons (Jensen 1996).
 //!
-//! Paths from the camera meet it by chance only, and that of point lights in mirrors never. Each pass shoots photons anew and counts them in
-//! a disk around each point; the disk shrinks from pass to pass, so that the mean of all passes converges (Knaus & Zwicker 2011,
-//! "Progressive Photon Mapping: A Probabilistic Approach"). What photons bring is left out of paths: see `Before`.
+//! Paths from the camera meet it by chance only, and that of point lights in mirrors never. Each pass shoots photons anew and
+//! counts them in a disk around each point; the disk shrinks from pass to pass, so that the mean of all passes converges (Knaus &
+//! Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach"). What photons bring is left out of paths: see `Before`.
 
 use super::emission::Origins;
 use super::light_path::{Arrival, trace_light};

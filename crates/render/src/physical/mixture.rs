@@ -30,8 +30,8 @@ const DARK: f64 = 0.8;
 const LEAST_SHOWN: u32 = 4;
 const LEAST_GAIN: f64 = 0.1;
 
-/// Techniques with less weight than this are left out: what they would add is less than what a bright speck of theirs, of which the
-/// variance did not know, would spoil.
+/// Techniques with less weight than this are left out: what they would add is less than what a bright speck of theirs, of which
+/// the variance did not know, would spoil.
 const LEAST_WEIGHT: f64 = 0.1;
 
 /// Variances below this, relative to the pixels' squares, are taken as this.
@@ -45,8 +45,8 @@ struct Canvas {
     moments: Vec<Moments>,
     /// Of each tile: samples of each of its pixels.
     shown: Vec<u32>,
-    /// Of each tile: what probes found at its probed pixels. It is not shown: single pixels that differ from their tile would get much
-    /// weight from few samples.
+    /// Of each tile: what probes found at its probed pixels. It is not shown: single pixels that differ from their tile would get
+    /// much weight from few samples.
     probes: Vec<Vec<Moments>>,
 }
 
@@ -231,8 +231,9 @@ impl Mixture {
         brightness * brightness + dark
     }
 
-    /// What evenly spread points make of a technique's variance: errors of means, as both halves show them, relative to what the spread of
-    /// their samples lets expect. It takes many pixels to tell, so the whole picture has one; 1 where nothing is known.
+    /// What evenly spread points make of a technique's variance: errors of means, as both halves show them, relative to what the
+    /// spread of their samples lets expect. It takes many pixels to tell, so the whole picture has one, which no single bright
+    /// sample moves much; 1 where nothing is known.
     fn gain(&self, technique: usize, dark: f64) -> f64 {
         let of_half = |half: usize| self.canvases[technique * self.halves + half].as_ref();
         let (Some(first), Some(second)) = (of_half(0), of_half(1)) else { return 1.0 };

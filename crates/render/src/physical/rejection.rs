@@ -1,8 +1,8 @@
 //! Which virtual lights of light paths are kept: those that matter to the camera (Georgiev & Slusallek 2010, "Simple and Robust
 //! Iterative Importance Sampling of Virtual Point Lights").
 //!
-//! A candidate that brings less than the mean to places that the camera sees is kept with a probability of the ratio, and is as much
-//! brighter then. The mean comes from earlier passes, so that nothing is biased.
+//! A candidate that brings less than the mean to places that the camera sees is kept with a probability of the ratio, and is as
+//! much brighter then. The mean comes from earlier passes, so that nothing is biased.
 
 use super::gather::Receiver;
 use super::lightcuts::gathered_lobes;
