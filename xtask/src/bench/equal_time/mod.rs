@@ -65,8 +65,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
             let mut rows = Vec::new();
             for (name, integrator) in INTEGRATORS {
                 let errors = args.seconds.iter().map(|&seconds| clock.error_after(&case, integrator, seconds));
-                rows.push(Measured { name, errors: errors.collect::<Result<_>>()? });
-                eprintln!("{}, {name}: {:?}", case.title, rows.last().map(|row| &row.errors));
+                let errors: Vec<f64> = errors.collect::<Result<_>>()?;
+                let shown: Vec<String> = errors.iter().map(|error| format!("{error:.2e}")).collect();
+                eprintln!("{}, {name}: {}", case.title, shown.join(", "));
+                rows.push(Measured { name, errors });
             }
             text += &report::section(&case, &args.seconds, &rows);
         }
