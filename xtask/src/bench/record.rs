@@ -20,6 +20,7 @@ A log, newest entry last. Each entry is what one call prints:
 
 ```sh
 cargo xtask bench gpu --append          # a GPU
+cargo xtask bench rays --append         # rays on the CPU
 cargo xtask bench scaling --append      # the physical model: the work of cuts
 cargo xtask bench equal-time --append   # the physical model: error after equal time
 ```

@@ -2,8 +2,7 @@
 
 use super::physical::{load, render, settings};
 use super::record;
-use super::table::Table;
-use super::table::verdict;
+use super::table::{Table, verdict};
 use crate::project;
 use anyhow::{Result, ensure};
 use lightcuts::image::Image;

@@ -8,7 +8,7 @@
 
 use super::avx2_packet::{Packet, meet, safe_reciprocal};
 use super::avx2_trace::{
-    Stack, Wide3, any_hit, block, closest_hit, cross, dot, lanes, load, nearer_hit, other_hit, splat3, store, sub,
+    Stack, Wide3, any_hit, block, closest_hit, cross_triangles, lanes, load, nearer_hit, other_hit, splat3, store,
 };
 use super::tracer::Tracer;
 use lightcuts_kernel::Rules;
@@ -16,10 +16,9 @@ use lightcuts_kernel::intersect::min_determinant;
 use lightcuts_kernel::ray::{Hit, NONE, Ray, SLAB_SLACK};
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
-    __m256, __m256i, _CMP_EQ_OQ, _CMP_GE_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NLT_UQ, _mm256_add_ps, _mm256_and_ps,
-    _mm256_andnot_ps, _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpgt_epi32,
-    _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_epi32,
-    _mm256_set1_ps, _mm256_setzero_ps, _mm256_sub_ps,
+    __m256, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_blendv_ps, _mm256_castps_si256,
+    _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpgt_epi32, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
+    _mm256_mul_ps, _mm256_or_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setzero_ps, _mm256_sub_ps,
 };
 
 /// So few rays are quicker alone.
@@ -108,27 +107,9 @@ impl<'a> Bundle<'a> {
     #[inline]
     fn intersect(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
         let at = |of: &[[f32; LANES]; 3]| [0, 1, 2].map(|axis: usize| _mm256_set1_ps(of[axis][lane]));
-        let (edge1, edge2) = (at(&block.edge1), at(&block.edge2));
-        let p = cross(self.packet.direction, edge2);
-        let determinant = dot(edge1, p);
-        let magnitude = _mm256_andnot_ps(_mm256_set1_ps(-0.0), determinant);
-        let mut hit = _mm256_cmp_ps::<_CMP_NLT_UQ>(magnitude, _mm256_set1_ps(least));
-        let inverse = _mm256_div_ps(_mm256_set1_ps(1.0), determinant);
-        let to_origin = sub(self.packet.origin, at(&block.corner));
-        let u = _mm256_mul_ps(dot(to_origin, p), inverse);
-        let q = cross(to_origin, edge1);
-        let v = _mm256_mul_ps(dot(self.packet.direction, q), inverse);
-        let t = _mm256_mul_ps(dot(edge2, q), inverse);
-        let zero = _mm256_setzero_ps();
-        for condition in [
-            _mm256_cmp_ps::<_CMP_GE_OQ>(u, zero),
-            _mm256_cmp_ps::<_CMP_GE_OQ>(v, zero),
-            _mm256_cmp_ps::<_CMP_LE_OQ>(_mm256_add_ps(u, v), _mm256_set1_ps(1.0)),
-            self.packet.between_ends(t),
-        ] {
-            hit = _mm256_and_ps(hit, condition);
-        }
-        (hit, [t, u, v])
+        let triangle = [at(&block.corner), at(&block.edge1), at(&block.edge2)];
+        let (inside, [t, u, v]) = cross_triangles(self.packet.origin, self.packet.direction, triangle, least);
+        (_mm256_and_ps(inside, self.packet.between_ends(t)), [t, u, v])
     }
 
     /// Which of the rays in `asked` hit a triangle.

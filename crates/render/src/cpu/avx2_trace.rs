@@ -64,6 +64,37 @@ pub(super) fn cross(a: Wide3, b: Wide3) -> Wide3 {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
+/// Lanes whose line crosses their triangle (corner and two edges), with t, u and v; the arithmetic of `intersect_triangle`. The
+/// ends of the rays are left to the caller.
+#[target_feature(enable = "avx2,fma,bmi1")]
+#[inline]
+pub(super) fn cross_triangles(
+    origin: Wide3,
+    direction: Wide3,
+    [corner, edge1, edge2]: [Wide3; 3],
+    min_determinant: f32,
+) -> (__m256, [__m256; 3]) {
+    let p = cross(direction, edge2);
+    let determinant = dot(edge1, p);
+    let magnitude = _mm256_andnot_ps(_mm256_set1_ps(-0.0), determinant);
+    let mut hit = _mm256_cmp_ps::<_CMP_NLT_UQ>(magnitude, _mm256_set1_ps(min_determinant));
+    let inverse = _mm256_div_ps(_mm256_set1_ps(1.0), determinant);
+    let to_origin = sub(origin, corner);
+    let u = _mm256_mul_ps(dot(to_origin, p), inverse);
+    let q = cross(to_origin, edge1);
+    let v = _mm256_mul_ps(dot(direction, q), inverse);
+    let t = _mm256_mul_ps(dot(edge2, q), inverse);
+    let zero = _mm256_setzero_ps();
+    for condition in [
+        _mm256_cmp_ps::<_CMP_GE_OQ>(u, zero),
+        _mm256_cmp_ps::<_CMP_GE_OQ>(v, zero),
+        _mm256_cmp_ps::<_CMP_LE_OQ>(_mm256_add_ps(u, v), _mm256_set1_ps(1.0)),
+    ] {
+        hit = _mm256_and_ps(hit, condition);
+    }
+    (hit, [t, u, v])
+}
+
 /// A ray in all lanes, to meet boxes.
 struct BoxRay {
     reciprocal: Wide3,
@@ -136,27 +167,11 @@ impl WideRay {
     #[target_feature(enable = "avx2,fma,bmi1")]
     #[inline]
     fn intersect(&self, block: &TriangleBlock, min_determinant: f32) -> (u32, [__m256; 3]) {
-        let (edge1, edge2) = (load3(&block.edge1), load3(&block.edge2));
-        let p = cross(self.direction, edge2);
-        let determinant = dot(edge1, p);
-        let magnitude = _mm256_andnot_ps(_mm256_set1_ps(-0.0), determinant);
-        let mut hit = _mm256_cmp_ps::<_CMP_NLT_UQ>(magnitude, _mm256_set1_ps(min_determinant));
-        let inverse = _mm256_div_ps(_mm256_set1_ps(1.0), determinant);
-        let to_origin = sub(self.origin, load3(&block.corner));
-        let u = _mm256_mul_ps(dot(to_origin, p), inverse);
-        let q = cross(to_origin, edge1);
-        let v = _mm256_mul_ps(dot(self.direction, q), inverse);
-        let t = _mm256_mul_ps(dot(edge2, q), inverse);
-        let zero = _mm256_setzero_ps();
-        for condition in [
-            _mm256_cmp_ps::<_CMP_GE_OQ>(u, zero),
-            _mm256_cmp_ps::<_CMP_GE_OQ>(v, zero),
-            _mm256_cmp_ps::<_CMP_LE_OQ>(_mm256_add_ps(u, v), _mm256_set1_ps(1.0)),
-            _mm256_cmp_ps::<_CMP_GT_OQ>(t, self.t_min),
-            _mm256_cmp_ps::<_CMP_LT_OQ>(t, self.t_max),
-        ] {
-            hit = _mm256_and_ps(hit, condition);
-        }
+        let triangles = [load3(&block.corner), load3(&block.edge1), load3(&block.edge2)];
+        let (inside, [t, u, v]) = cross_triangles(self.origin, self.direction, triangles, min_determinant);
+        let after = _mm256_cmp_ps::<_CMP_GT_OQ>(t, self.t_min);
+        let before = _mm256_cmp_ps::<_CMP_LT_OQ>(t, self.t_max);
+        let hit = _mm256_and_ps(inside, _mm256_and_ps(after, before));
         (_mm256_movemask_ps(hit) as u32, [t, u, v])
     }
 }

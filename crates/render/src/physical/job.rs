@@ -115,7 +115,10 @@ impl<'a> PhysicalJob<'a> {
             if taken >= wanted {
                 return;
             }
-            self.mixture.learn();
+            // Paths alone need to know nothing.
+            if uses_vpls {
+                self.mixture.learn();
+            }
             let noise = self.settings.physical.noise;
             let is_time_to_look = (pass + 1).is_multiple_of(NOISE_INTERVAL);
             if is_time_to_look && noise > 0.0 && self.mixture.noise() <= f64::from(noise) {
@@ -270,7 +273,9 @@ impl<'a> PhysicalJob<'a> {
     }
 
     fn finish(mut self) -> PhysicalRendering {
-        self.mixture.learn();
+        if self.plan.techniques().len() > 1 {
+            self.mixture.learn();
+        }
         let stats = &mut self.stats;
         stats.rays.primary = self.counts.primary;
         stats.rays.secondary = self.counts.bounces;
