@@ -51,7 +51,7 @@ const DOCS_SIZE: &str = "400x300";
 /// Renders every scene and says how long each took; fails at the end if one failed.
 pub(crate) fn run(args: &Args) -> Result<()> {
     let models = args.models.clone().unwrap_or_else(project::shared_models);
-    let cli = project::release_cli()?;
+    let cli = project::build_for_speed(&["lightcuts-cli"])?.join("lightcuts");
     let folder = if args.docs { DOCS } else { "out/gallery" };
     let pictures = project::root().join(folder);
     fs::create_dir_all(&pictures).with_context(|| format!("cannot make {}", pictures.display()))?;

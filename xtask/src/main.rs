@@ -35,8 +35,7 @@ enum Task {
     /// Write the generated models to scenes/models.
     Models(model_files::Args),
     /// Measure.
-    #[command(subcommand)]
-    Bench(bench::Bench),
+    Bench(bench::Args),
     /// Render every scene to out/gallery.
     Gallery(gallery::Args),
 }
@@ -56,7 +55,7 @@ fn run(task: &Task) -> Result<()> {
         Task::Test => test::run(),
         Task::Ci => ci::run(),
         Task::Models(args) => model_files::run(args),
-        Task::Bench(bench) => bench::run(bench),
+        Task::Bench(args) => bench::run(args),
         Task::Gallery(args) => gallery::run(args),
     }
 }

@@ -1,7 +1,7 @@
 //! The project's folders and its tools.
 
 use anyhow::{Context as _, Result, bail};
-use std::env::{self, consts::EXE_SUFFIX};
+use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -43,17 +43,13 @@ pub(crate) fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// Builds the `lightcuts` command for speed and returns where it is.
-pub(crate) fn release_cli() -> Result<PathBuf> {
-    run(cargo().args(["build", "--release", "--package", "lightcuts-cli"]))?;
+/// Builds packages for speed and returns the folder of their programs.
+pub(crate) fn build_for_speed(packages: &[&str]) -> Result<PathBuf> {
+    run(cargo().args(["build", "--release"]).args(packages.iter().flat_map(|package| ["--package", package])))?;
     // This program lies in the target folder's `debug` or `release`, whatever the target folder is called.
     let this = env::current_exe().context("cannot tell where this program is")?;
     let target = this.parent().and_then(Path::parent).context("this program lies in no target folder")?;
-    let cli = target.join("release").join(format!("lightcuts{EXE_SUFFIX}"));
-    if !cli.is_file() {
-        bail!("the build made no {}", cli.display());
-    }
-    Ok(cli)
+    Ok(target.join("release"))
 }
 
 #[cfg(test)]
