@@ -113,11 +113,11 @@ fn intersect_square(square: Square, ray: Ray) -> Hit {
     if (slope == 0.0) {
         return no_hit(ray.t_max);
     }
-    let t = dot3(square.center - ray.origin, square.normal) / slope;
+    let t = quotient(dot3(square.center - ray.origin, square.normal), slope);
     if (!(t > ray.t_min && t < ray.t_max)) {
         return no_hit(ray.t_max);
     }
-    let offset = ray.origin + ray.direction * t - square.center;
+    let offset = ray.origin + scaled(ray.direction, t) - square.center;
     if (abs(dot3(offset, square.along)) <= square.half_height && abs(dot3(offset, square.across)) <= square.half_width) {
         return Hit(t, square.primitive, 0.0, 0.0);
     }

@@ -89,7 +89,7 @@ pub fn pack_octahedral(x: f32, y: f32) -> u32 {
 
 /// The unit vector of [`pack_axis`].
 pub fn unpack_axis(packed: u32) -> Vec3 {
-    let coordinate = |word: u32| ((word & 0xffff) as f32 - 32_767.0) / 32_767.0;
+    let coordinate = |word: u32| ((word & 0xffff) as i32 - 32_767) as f32 * (1.0 / 32_767.0);
     let (x, y) = (coordinate(packed), coordinate(packed >> 16));
     let z = 1.0 - x.abs() - y.abs();
     if z < 0.0 {
@@ -147,6 +147,11 @@ pub fn pack_cluster(cluster: &LightCluster, intensity: f32) -> PackedLightNode {
     }
 }
 
+/// The sine of an angle of 0 to pi.
+pub fn sine_of(cosine: f32) -> f32 {
+    (1.0 - cosine * cosine).max(0.0).sqrt()
+}
+
 /// The cluster of a node; it holds what was packed.
 pub fn unpack_cluster(node: &PackedLightNode) -> LightCluster {
     if node.lower.x >= EMPTY_CORNER {
@@ -157,14 +162,14 @@ pub fn unpack_cluster(node: &PackedLightNode) -> LightCluster {
         widen_16(node.extent_xy >> 16),
         widen_16(node.extent_z_spread & 0xffff),
     );
-    let sin_half = (node.extent_z_spread >> 16) as f32 / 65_535.0;
+    let sin_half = (node.extent_z_spread >> 16) as f32 * (1.0 / 65_535.0);
     let cos_spread = ((1.0 - ROUNDING) - 2.0 * sin_half * sin_half).max(-1.0);
     LightCluster {
         lower: node.lower,
         upper: node.lower + extent,
         axis: unpack_axis(node.axis),
         cos_spread,
-        sin_spread: (1.0 - cos_spread * cos_spread).max(0.0).sqrt(),
+        sin_spread: sine_of(cos_spread),
         min_intensity: widen_16(node.intensities & 0xffff),
         max_intensity: widen_16(node.intensities >> 16),
     }
@@ -186,7 +191,7 @@ pub fn vpl_cluster(vpl: &Vpl) -> LightCluster {
         upper: vpl.position,
         axis,
         cos_spread,
-        sin_spread: (1.0 - cos_spread * cos_spread).max(0.0).sqrt(),
+        sin_spread: sine_of(cos_spread),
         min_intensity: least_intensity(intensity, cos_spread),
         max_intensity: intensity,
     }
@@ -205,7 +210,7 @@ pub fn enclosing_cosine(axis: Vec3, cluster: &LightCluster) -> f32 {
     if cosine <= -cluster.cos_spread || axis == Vec3::ZERO {
         return -1.0;
     }
-    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let sine = sine_of(cosine);
     below_cosine(cosine * cluster.cos_spread - sine * cluster.sin_spread)
 }
 
@@ -224,7 +229,7 @@ pub fn merge_clusters(a: &LightCluster, b: &LightCluster) -> LightCluster {
         upper: a.upper.max(b.upper),
         axis,
         cos_spread,
-        sin_spread: (1.0 - cos_spread * cos_spread).max(0.0).sqrt(),
+        sin_spread: sine_of(cos_spread),
         min_intensity: least_intensity(a.min_intensity.min(b.min_intensity), cos_spread),
         max_intensity: a.max_intensity.max(b.max_intensity),
     }

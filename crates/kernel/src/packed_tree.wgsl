@@ -48,8 +48,8 @@ fn pack_octahedral(x: f32, y: f32) -> u32 {
 }
 
 fn unpack_axis(packed: u32) -> vec3<f32> {
-    let x = (f32(packed & 0xffffu) - 32767.0) / 32767.0;
-    let y = (f32(packed >> 16u) - 32767.0) / 32767.0;
+    let x = f32(i32(packed & 0xffffu) - 32767) * (1.0 / 32767.0);
+    let y = f32(i32(packed >> 16u) - 32767) * (1.0 / 32767.0);
     let z = 1.0 - abs(x) - abs(y);
     if (z < 0.0) {
         return normalize_or_zero(vec3<f32>((1.0 - abs(y)) * sign_factor(x), (1.0 - abs(x)) * sign_factor(y), z));
@@ -87,6 +87,10 @@ fn pack_cluster(cluster: LightCluster, intensity: f32) -> PackedLightNode {
     );
 }
 
+fn sine_of(cosine: f32) -> f32 {
+    return sqrt(max(1.0 - rounded_product(cosine, cosine), 0.0));
+}
+
 fn unpack_cluster(node: PackedLightNode) -> LightCluster {
     if (node.lower.x >= EMPTY_CORNER) {
         return empty_cluster();
@@ -94,14 +98,14 @@ fn unpack_cluster(node: PackedLightNode) -> LightCluster {
     let extent = vec3<f32>(
         widen_16(node.extent_xy & 0xffffu), widen_16(node.extent_xy >> 16u), widen_16(node.extent_z_spread & 0xffffu),
     );
-    let sin_half = f32(node.extent_z_spread >> 16u) / 65535.0;
-    let cos_spread = max((1.0 - ROUNDING) - 2.0 * sin_half * sin_half, -1.0);
+    let sin_half = f32(node.extent_z_spread >> 16u) * (1.0 / 65535.0);
+    let cos_spread = max((1.0 - ROUNDING) - rounded_product(2.0 * sin_half, sin_half), -1.0);
     return LightCluster(
         node.lower,
         node.lower + extent,
         unpack_axis(node.axis),
         cos_spread,
-        sqrt(max(1.0 - cos_spread * cos_spread, 0.0)),
+        sine_of(cos_spread),
         widen_16(node.intensities & 0xffffu),
         widen_16(node.intensities >> 16u),
     );
@@ -120,7 +124,7 @@ fn vpl_cluster(vpl: Vpl) -> LightCluster {
         vpl.position,
         axis,
         cos_spread,
-        sqrt(max(1.0 - cos_spread * cos_spread, 0.0)),
+        sine_of(cos_spread),
         least_intensity(intensity, cos_spread),
         intensity,
     );
@@ -135,7 +139,7 @@ fn enclosing_cosine(axis: vec3<f32>, cluster: LightCluster) -> f32 {
     if (cosine <= -cluster.cos_spread || all(axis == vec3<f32>(0.0))) {
         return -1.0;
     }
-    let sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    let sine = sine_of(cosine);
     return below_cosine(cosine * cluster.cos_spread - sine * cluster.sin_spread);
 }
 
@@ -153,7 +157,7 @@ fn merge_clusters(a: LightCluster, b: LightCluster) -> LightCluster {
         max(a.upper, b.upper),
         axis,
         cos_spread,
-        sqrt(max(1.0 - cos_spread * cos_spread, 0.0)),
+        sine_of(cos_spread),
         least_intensity(min(a.min_intensity, b.min_intensity), cos_spread),
         max(a.max_intensity, b.max_intensity),
     );

@@ -59,10 +59,10 @@ fn safe_reciprocal(direction: vec3<f32>) -> vec3<f32> {
 
 fn normalize_or_zero(v: vec3<f32>) -> vec3<f32> {
     let length = length3(v);
-    let reciprocal = 1.0 / length;
+    let reciprocal = quotient(1.0, length);
     // Neither 1 / 0 nor 1 / infinity is a factor.
     if (length > 0.0 && reciprocal > 0.0 && reciprocal <= FAR) {
-        return v * reciprocal;
+        return scaled(v, reciprocal);
     }
     return vec3<f32>(0.0);
 }

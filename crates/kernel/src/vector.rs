@@ -34,3 +34,23 @@ pub fn min_element(v: Vec3) -> f32 {
 pub fn copy_sign(magnitude: f32, sign: f32) -> f32 {
     magnitude.copysign(sign)
 }
+
+/// A product that is rounded before anything is added to it.
+pub fn rounded_product(a: f32, b: f32) -> f32 {
+    a * b
+}
+
+/// A vector by a factor; products are rounded before anything is added to them.
+pub fn scaled(v: Vec3, factor: f32) -> Vec3 {
+    v * factor
+}
+
+/// A quotient, correctly rounded, as decisions about edges need it.
+pub fn quotient(a: f32, b: f32) -> f32 {
+    a / b
+}
+
+/// A square root, correctly rounded.
+pub fn square_root(x: f32) -> f32 {
+    x.sqrt()
+}

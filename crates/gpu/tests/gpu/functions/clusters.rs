@@ -6,11 +6,11 @@ use lightcuts_kernel::light_tree::LightCluster;
 use lightcuts_kernel::packed_tree::{
     PackedLightNode, append_bits, below_cosine, empty_cluster, enclosing_cosine, is_empty_cluster, least_intensity,
     merge_clusters, morton_key, pack_axis, pack_cluster, pack_extent, pack_octahedral, quantize, round_down_16,
-    round_up_16, sign_factor, unpack_axis, unpack_cluster, vpl_cluster, widen_16,
+    round_up_16, sign_factor, sine_of, unpack_axis, unpack_cluster, vpl_cluster, widen_16,
 };
 
 /// The rows.
-pub(crate) const ROWS: [Row; 21] = [
+pub(crate) const ROWS: [Row; 22] = [
     twin("round_up_16", |c| c.put(round_up_16(c.positive()))),
     twin("round_down_16", |c| c.put(round_down_16(c.positive()))),
     twin("widen_16", |c| c.put(widen_16(c.below(0x7f80)))),
@@ -28,6 +28,7 @@ pub(crate) const ROWS: [Row; 21] = [
     twin("pack_cluster", |c| c.put(pack_cluster(&c.cluster(), c.positive()))),
     twin("unpack_cluster", |c| c.put(unpack_cluster(&packed(c)))),
     twin("vpl_cluster", |c| c.put(vpl_cluster(&c.vpl()))),
+    twin("sine_of", |c| c.put(sine_of(c.between(-1.0, 1.0)))),
     twin("below_cosine", |c| c.put(below_cosine(c.between(-1.0, 1.0)))),
     twin("least_intensity", |c| c.put(least_intensity(c.positive(), c.between(-1.0, 1.0)))),
     twin("enclosing_cosine", |c| c.put(enclosing_cosine(c.direction(), &c.cluster()))),

@@ -5,15 +5,21 @@ use lightcuts_kernel::filter::{filter_along, filter_weight, gaussian, mitchell};
 use lightcuts_kernel::power::{exp2_polynomial, log2_polynomial, power};
 use lightcuts_kernel::rng::{hash4, original_next, original_skip, original_value, random4, stream, unit_float};
 use lightcuts_kernel::sampling::{frame, sample_cosine_cone, sin_cos_turns};
-use lightcuts_kernel::vector::{copy_sign, cross3, dot3, length3, max_element, min_element};
+use lightcuts_kernel::vector::{
+    copy_sign, cross3, dot3, length3, max_element, min_element, quotient, rounded_product, scaled, square_root,
+};
 
 /// The rows.
-pub(crate) const ROWS: [Row; 25] = [
+pub(crate) const ROWS: [Row; 29] = [
     twin("dot3", |c| c.put(dot3(c.point(), c.point()))),
     twin("cross3", |c| c.put(cross3(c.point(), c.point()))),
     twin("length3", |c| c.put(length3(c.point()))),
     twin("max_element", |c| c.put(max_element(c.point()))),
     twin("min_element", |c| c.put(min_element(c.point()))),
+    twin("rounded_product", |c| c.put(rounded_product(c.float(), c.float()))),
+    twin("scaled", |c| c.put(scaled(c.point(), c.float()))),
+    twin("quotient", |c| c.put(quotient(c.float(), c.float()))),
+    twin("square_root", |c| c.put(square_root(c.positive()))),
     twin("copy_sign", |c| c.put(copy_sign(c.float(), c.float()))),
     twin("hash4", |c| c.put(hash4([c.word(), c.word(), c.word(), c.word()]))),
     twin("unit_float", |c| c.put(unit_float(c.word()))),
