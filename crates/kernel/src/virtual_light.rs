@@ -15,12 +15,12 @@ pub struct VirtualLight {
     pub table: u32,
     /// Unit normal of the surface, on the side that shines.
     pub normal: Vec3,
-    /// Unit normal for shading, packed by [`pack_direction`].
+    /// Unit normal for shading, packed by [`pack_direction`]; see [`shading_normal`].
     pub shading: u32,
     /// Radiant intensity along the normal, of all paths together, in W/sr.
     pub intensity: Vec3,
-    /// Unused.
-    pub padding: u32,
+    /// Whether the shading normal is another than the surface's: 0 or 1.
+    pub is_bent: u32,
 }
 
 /// A unit vector in two numbers of 16 bits, on an octahedron (Cigolle et al. 2014).
@@ -45,6 +45,11 @@ pub fn unpack_direction(packed: u32) -> Vec3 {
     Vec3::new(x, y, z).normalize_or_zero()
 }
 
+/// The shading normal of a virtual light.
+pub fn shading_normal(light: &VirtualLight) -> Vec3 {
+    if light.is_bent == 0 { light.normal } else { unpack_direction(light.shading) }
+}
+
 /// The table of a material's virtual lights.
 pub fn virtual_table(bsdf: &Bsdf) -> u32 {
     if bsdf.kind == PLASTIC { bsdf.table } else { NONE }
@@ -54,7 +59,7 @@ pub fn virtual_table(bsdf: &Bsdf) -> u32 {
 /// from the light.
 pub fn virtual_emission(light: &VirtualLight, tables: &[f32], direction: Vec3) -> f32 {
     let cos = light.normal.dot(direction);
-    let of_shading = unpack_direction(light.shading).dot(direction);
+    let of_shading = shading_normal(light).dot(direction);
     if cos <= 0.0 || of_shading <= 0.0 {
         return 0.0;
     }

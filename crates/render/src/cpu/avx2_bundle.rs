@@ -11,6 +11,7 @@ use super::avx2_trace::{
     Stack, Wide3, any_hit, block, closest_hit, cross_triangles, lanes, load, nearer_hit, other_hit, splat3, store,
 };
 use super::tracer::Tracer;
+use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::min_determinant;
 use lightcuts_kernel::ray::{Hit, NONE, Ray, SLAB_SLACK};
@@ -55,7 +56,8 @@ impl<'a> Bundle<'a> {
         if asked == 0 {
             return None;
         }
-        let reciprocal = packet.direction.map(|c| safe_reciprocal(c));
+        let [x, y, z] = packet.direction;
+        let reciprocal = [safe_reciprocal(x), safe_reciprocal(y), safe_reciprocal(z)];
         let mut backwards = [0; 3];
         for axis in 0..3 {
             let signs = _mm256_movemask_ps(reciprocal[axis]) as u32 & asked;
@@ -106,7 +108,7 @@ impl<'a> Bundle<'a> {
     #[target_feature(enable = "avx2,fma,bmi1")]
     #[inline]
     fn intersect(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
-        let at = |of: &[[f32; LANES]; 3]| [0, 1, 2].map(|axis: usize| _mm256_set1_ps(of[axis][lane]));
+        let at = |of: &[[f32; LANES]; 3]| splat3(Vec3::new(of[0][lane], of[1][lane], of[2][lane]));
         let triangle = [at(&block.corner), at(&block.edge1), at(&block.edge2)];
         let (inside, [t, u, v]) = cross_triangles(self.packet.origin, self.packet.direction, triangle, least);
         (_mm256_and_ps(inside, self.packet.between_ends(t)), [t, u, v])

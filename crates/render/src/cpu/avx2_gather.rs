@@ -107,7 +107,8 @@ pub(super) fn evaluate(
         let to_light = sub(load3(&block.position), point);
         let dist_sq = dot(to_light, to_light);
         let reciprocal = _mm256_div_ps(one, _mm256_sqrt_ps(dist_sq));
-        let unit = to_light.map(|c| _mm256_mul_ps(c, reciprocal));
+        let [x, y, z] = to_light;
+        let unit = [_mm256_mul_ps(x, reciprocal), _mm256_mul_ps(y, reciprocal), _mm256_mul_ps(z, reciprocal)];
         let cos_theta = dot(normal, unit);
         let cos_phi = _mm256_sub_ps(zero, dot(load3(&block.direction), unit));
         let relevant = match threshold {
@@ -135,7 +136,7 @@ pub(super) fn evaluate(
             sums[channel] = _mm256_add_ps(sums[channel], _mm256_and_ps(color, visible));
         }
     }
-    let [r, g, b] = sums.map(|s| store(s));
+    let [r, g, b] = [store(sums[0]), store(sums[1]), store(sums[2])];
     gathered.color = (0..LANES).fold(Vec3::ZERO, |total, lane| total + Vec3::new(r[lane], g[lane], b[lane]));
     gathered
 }

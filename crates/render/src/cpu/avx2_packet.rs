@@ -9,7 +9,7 @@
 
 use super::avx2_bundle::Bundle;
 use super::avx2_trace::{Wide3, any_hit, dot, lanes, load, splat3, store, sub};
-use super::tracer::Tracer;
+use super::tracer::{RayLanes, Tracer};
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square};
@@ -99,6 +99,29 @@ pub(super) fn occluded(tracer: &Tracer<'_>, rays: &[Ray; LANES], asked: u32) -> 
     any_hits(tracer, &Packet::new(rays), None, asked)
 }
 
+// Written out: with `map`, over arrays of registers, the compiler has been seen to misplace them on the stack.
+
+/// Eight vectors by their coordinates.
+#[target_feature(enable = "avx2,fma,bmi1")]
+fn wide3(vectors: [Vec3; LANES]) -> Wide3 {
+    [load(&vectors.map(|v| v.x)), load(&vectors.map(|v| v.y)), load(&vectors.map(|v| v.z))]
+}
+
+/// The coordinates of eight vectors.
+#[target_feature(enable = "avx2,fma,bmi1")]
+fn store3([x, y, z]: Wide3) -> [[f32; LANES]; 3] {
+    [store(x), store(y), store(z)]
+}
+
+/// Twin of `Tracer::occluded_lanes`.
+#[target_feature(enable = "avx2,fma,bmi1")]
+pub(super) fn occluded_lanes(tracer: &Tracer<'_>, rays: &RayLanes, asked: u32) -> u32 {
+    let load3 = |of: &[[f32; LANES]; 3]| [load(&of[0]), load(&of[1]), load(&of[2])];
+    let (origin, direction) = (load3(&rays.origin), load3(&rays.direction));
+    let packet = Packet { origin, direction, t_min: _mm256_setzero_ps(), t_max: load(&rays.t_max) };
+    any_hits(tracer, &packet, None, asked)
+}
+
 /// Twin of `kernel::ray::safe_reciprocal`.
 #[target_feature(enable = "avx2,fma,bmi1")]
 pub(super) fn safe_reciprocal(c: __m256) -> __m256 {
@@ -133,8 +156,8 @@ impl Packet {
     #[target_feature(enable = "avx2,fma,bmi1")]
     pub(super) fn new(rays: &[Ray; LANES]) -> Self {
         Self {
-            origin: [0, 1, 2].map(|axis| load(&rays.map(|ray| ray.origin[axis]))),
-            direction: [0, 1, 2].map(|axis| load(&rays.map(|ray| ray.direction[axis]))),
+            origin: wide3(rays.map(|ray| ray.origin)),
+            direction: wide3(rays.map(|ray| ray.direction)),
             t_min: load(&rays.map(|ray| ray.t_min)),
             t_max: load(&rays.map(|ray| ray.t_max)),
         }
@@ -151,7 +174,7 @@ impl Packet {
     /// One by one.
     #[target_feature(enable = "avx2,fma,bmi1")]
     pub(super) fn rays(&self) -> [Ray; LANES] {
-        let (origin, direction) = (self.origin.map(|c| store(c)), self.direction.map(|c| store(c)));
+        let (origin, direction) = (store3(self.origin), store3(self.direction));
         let (t_min, t_max) = (store(self.t_min), store(self.t_max));
         std::array::from_fn(|lane| {
             let at = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
@@ -163,7 +186,8 @@ impl Packet {
     /// Rays that meet a box, as in `bvh::enter_box`.
     #[target_feature(enable = "avx2,fma,bmi1")]
     fn meet(&self, (lower, upper): (Vec3, Vec3)) -> u32 {
-        let reciprocal = self.direction.map(|c| safe_reciprocal(c));
+        let [x, y, z] = self.direction;
+        let reciprocal = [safe_reciprocal(x), safe_reciprocal(y), safe_reciprocal(z)];
         meet(self.origin, reciprocal, self.t_min, self.t_max, (splat3(lower), splat3(upper)))
     }
 

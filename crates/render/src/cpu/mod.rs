@@ -13,12 +13,17 @@ mod avx2_packet;
 mod avx2_trace;
 mod device;
 mod gather;
+mod lanes;
 mod tracer;
 
 pub use device::{CpuDevice, processor_name};
 #[cfg(test)]
 pub(crate) use gather::relevant_lanes;
 pub(crate) use gather::{Candidates, Receiver, evaluate, select, select_exhaustively};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use lanes::Wide;
+pub(crate) use lanes::{Lanes, Plain};
+pub(crate) use tracer::RayLanes;
 pub use tracer::Tracer;
 
 /// Whether SIMD instructions are used. Never changes the picture.

@@ -18,6 +18,21 @@ pub struct Tracer<'a> {
     pub(crate) mesh: (Vec3, Vec3),
 }
 
+/// Eight rays, number by number. None is inside of anything, and each begins at its origin.
+pub(crate) struct RayLanes {
+    pub(crate) origin: [[f32; LANES]; 3],
+    pub(crate) direction: [[f32; LANES]; 3],
+    pub(crate) t_max: [f32; LANES],
+}
+
+impl RayLanes {
+    fn ray(&self, lane: usize) -> Ray {
+        let vector = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
+        let (origin, direction) = (vector(&self.origin), vector(&self.direction));
+        Ray { origin, direction, t_min: 0.0, t_max: self.t_max[lane], inside: false }
+    }
+}
+
 impl<'a> Tracer<'a> {
     /// A tracer by `rules`.
     pub fn new(geometry: Geometry<'a>, rules: Rules, simd: Simd) -> Self {
@@ -69,6 +84,18 @@ impl<'a> Tracer<'a> {
             return unsafe { super::avx2_packet::occluded(self, rays, u32::from(asked)) } as u8;
         }
         let is_hit = |lane: &usize| asked >> lane & 1 == 1 && self.occluded(&rays[*lane]);
+        (0..LANES).filter(is_hit).fold(0, |hits, lane| hits | 1 << lane)
+    }
+
+    /// [`Tracer::occluded8`] of rays number by number.
+    #[allow(unsafe_code)]
+    pub(crate) fn occluded_lanes(&self, rays: &RayLanes, asked: u32) -> u32 {
+        #[cfg(target_arch = "x86_64")]
+        if self.avx2 {
+            // SAFETY: `avx2` is set only where the machine has the features.
+            return unsafe { super::avx2_packet::occluded_lanes(self, rays, asked) };
+        }
+        let is_hit = |lane: &usize| asked >> lane & 1 == 1 && self.occluded(&rays.ray(*lane));
         (0..LANES).filter(is_hit).fold(0, |hits, lane| hits | 1 << lane)
     }
 }

@@ -159,7 +159,7 @@ pub(crate) mod tests {
                     normal,
                     shading: pack_direction(normal),
                     intensity: Vec3::new(g, 0.5, b),
-                    padding: 0,
+                    is_bent: 0,
                 }
             })
             .collect()

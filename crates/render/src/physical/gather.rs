@@ -1,5 +1,6 @@
 //! Station 5: the light of virtual lights at a point: of all, of a cut, or of a few that are drawn.
 
+use super::bundle::Fineness;
 use super::cluster_tree::ClusterTree;
 use super::pass::Counts;
 use super::scene::{Interaction, Scene};
@@ -12,18 +13,20 @@ use lightcuts_kernel::ray::RELATIVE_EPSILON;
 use lightcuts_kernel::virtual_light::{VirtualLight, virtual_emission};
 
 /// A point that is lit, and what of its light counts.
+#[derive(Clone, Copy)]
 pub(crate) struct Receiver<'a> {
-    scene: &'a Scene<'a>,
-    at: &'a Interaction,
+    pub(super) scene: &'a Scene<'a>,
+    pub(super) at: &'a Interaction,
     /// Factors on what matt lobes send on, and on what glossy ones do.
-    matt: Vec3,
+    pub(super) matt: Vec3,
     glossy: Vec3,
-    bound: BoundReceiver,
-    weights: [f32; 2],
+    pub(super) bound: BoundReceiver,
+    /// Their greatest channels.
+    pub(super) weights: [f32; 2],
 }
 
 /// What was gathered.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Gathered {
     pub(crate) light: Vec3,
     /// Clusters and lights that it is the sum of.
@@ -51,7 +54,7 @@ impl<'a> Receiver<'a> {
     }
 
     /// What a light sends if nothing is between.
-    fn unshadowed(&self, light: &VirtualLight) -> Vec3 {
+    pub(super) fn unshadowed(&self, light: &VirtualLight) -> Vec3 {
         let to_light = light.position - self.at.point;
         let distance_sq = to_light.length_squared();
         if distance_sq == 0.0 {
@@ -86,7 +89,7 @@ impl<'a> Receiver<'a> {
         if self.scene.is_free(&self.at.ray_to(light.position, epsilon)) { sent } else { Vec3::ZERO }
     }
 
-    fn reach(&self, tree: &ClusterTree, node: u32, counts: &mut Counts) -> ClusterReach {
+    pub(super) fn reach(&self, tree: &ClusterTree, node: u32, counts: &mut Counts) -> ClusterReach {
         counts.bounds += 1;
         let tables = &self.scene.world.tables[..];
         cluster_reach(&tree.nodes[node as usize], &self.bound, &self.at.bsdf, tables, self.weights)
@@ -107,8 +110,7 @@ impl<'a> Receiver<'a> {
     pub(crate) fn cut(
         &self,
         tree: &ClusterTree,
-        error: f32,
-        max_cut: u32,
+        fineness: Fineness,
         reference: Option<f32>,
         heap: &mut CutHeap,
         counts: &mut Counts,
@@ -123,7 +125,7 @@ impl<'a> Receiver<'a> {
         self.place(tree, root, root_unit, heap, &mut open, &mut done, counts);
         while let Some(&worst) = heap.entries.first() {
             let total = reference.unwrap_or_else(|| light_power(done.light + open));
-            if worst.bound <= error * total || done.size + heap.entries.len() as u32 >= max_cut {
+            if worst.bound <= fineness.error * total || done.size + heap.entries.len() as u32 >= fineness.max_cut {
                 break;
             }
             heap.pop();
@@ -220,7 +222,7 @@ impl<'a> Receiver<'a> {
     }
 }
 
-fn representative_of(tree: &ClusterTree, child: u32) -> u32 {
+pub(super) fn representative_of(tree: &ClusterTree, child: u32) -> u32 {
     if child & LIGHT_CHILD != 0 { child & !LIGHT_CHILD } else { tree.nodes[child as usize].representative }
 }
 

@@ -4,17 +4,21 @@
 //! two factors: one on what the next vertex sends by its matt lobes, one on the rest. Where a vertex gathers virtual lights
 //! the first one is left with what the clamp of their distance takes away (Kollig & Keller 2004).
 
+use super::bundle::{Bundle, BundleHeap, Fineness};
 use super::cluster_tree::ClusterTree;
 use super::direct::{Before, DirectLight};
 use super::gather::{CutHeap, Gathered, Receiver};
-use super::pass::{Counts, FirstHit, SamplePass, Sampled};
+use super::pass::{Counts, FirstHit, SamplePass, Sampled, Start};
 use super::path::{MAX_VERTICES, Radiance};
 use super::randoms::Randoms;
 use super::scene::{Cone, Interaction, Scene};
 use crate::settings::{Physical, Strategy};
 use glam::Vec3;
-use lightcuts_kernel::bsdf::{ALL_LOBES, Bsdf, CONDUCTOR, GLOSSY, MATT, PHONG, PLASTIC, SPECULAR, Transport, lobes_of};
-use lightcuts_kernel::ray::Ray;
+use lightcuts_kernel::bsdf::{
+    ALL_LOBES, Bsdf, CONDUCTOR, GLOSSY, LAMBERT, MATT, PHONG, PLASTIC, SPECULAR, Transport, lobes_of,
+};
+use lightcuts_kernel::ray::{Hit, Ray};
+use lightcuts_world::bvh::LANES;
 use std::cell::RefCell;
 
 /// Narrower lobes are followed by paths: too few virtual lights lie in them.
@@ -23,7 +27,7 @@ pub(crate) const LEAST_GATHERED_ALPHA: f32 = 0.15;
 const GREATEST_GATHERED_EXPONENT: f32 = 60.0;
 
 /// Lights that are drawn at a vertex that gathers a whole cut: its share of the time is small.
-const FIRST_LIGHTS: u32 = 8;
+const FIRST_LIGHTS: u32 = 4;
 
 /// Virtual lights that are drawn where a path comes to its second matt vertex.
 const DRAWN_LIGHTS: u32 = 4;
@@ -44,8 +48,33 @@ pub(crate) struct Lightcuts<'a> {
     pub(crate) references: &'a [f32],
 }
 
+/// A point of a sample at which the virtual lights are still to be gathered.
+pub(crate) struct Pending {
+    /// Place of the sample among those that are taken together.
+    slot: usize,
+    pixel: u32,
+    /// Surfaces before it.
+    vertex: u32,
+    at: Interaction,
+    /// Factors on what its matt and its glossy lobes send.
+    matt: Vec3,
+    glossy: Vec3,
+}
+
+impl Pending {
+    fn receiver<'a>(&'a self, scene: &'a Scene<'a>, clamp: f32) -> Receiver<'a> {
+        Receiver::new(scene, &self.at, self.matt, self.glossy, clamp * clamp)
+    }
+}
+
+#[derive(Default)]
+struct Heaps {
+    single: CutHeap,
+    bundle: BundleHeap,
+}
+
 thread_local! {
-    static HEAP: RefCell<CutHeap> = RefCell::default();
+    static HEAPS: RefCell<Heaps> = RefCell::default();
 }
 
 /// A path on its way.
@@ -75,25 +104,78 @@ struct Drawn {
 }
 
 impl Lightcuts<'_> {
-    /// The light against a camera ray, with VPLs that a strategy gathers.
-    #[allow(clippy::too_many_arguments)] // what a sample is made of
+    /// The light against a camera ray, with VPLs that a strategy gathers; points whose light is a sum over all of them or over a
+    /// cut are left in `pending`.
     pub(crate) fn sample(
         &self,
         pass: &SamplePass<'_>,
         strategy: Strategy,
-        ray: Ray,
-        cone: Cone,
-        pixel: u32,
-        randoms: &mut Randoms,
+        start: Start,
+        pending: &mut Vec<Pending>,
         counts: &mut Counts,
     ) -> Sampled {
+        let Start { ray, cone, hit: mut next, mut randoms, slot, pixel } = start;
         let mut sampled = Sampled { radiance: Radiance::default(), first: None, cut: 0.0, bound: 0.0 };
-        let gathering = Gathering { lightcuts: self, pass, strategy, pixel };
-        let mut walk = Some(Walk::new(ray, cone));
-        while let Some(path) = walk {
-            walk = gathering.step(path, randoms, counts, &mut sampled);
+        let gathering = Gathering { lightcuts: self, pass, strategy, slot, pixel };
+        let mut walk = Walk::new(ray, cone);
+        while let Some(further) = gathering.step(walk, next, &mut randoms, pending, counts, &mut sampled) {
+            next = pass.scene.closest(&further.ray);
+            walk = further;
         }
         sampled
+    }
+
+    /// Adds the light of the virtual lights at points that samples have left. Points of Lambert's material are computed with one
+    /// another, which is quicker.
+    pub(crate) fn gather(
+        &self,
+        scene: &Scene<'_>,
+        strategy: Strategy,
+        pending: &[Pending],
+        sampled: &mut [Sampled],
+        counts: &mut Counts,
+    ) {
+        for is_lambert in [true, false] {
+            let points: Vec<&Pending> = pending.iter().filter(|p| (p.at.bsdf.kind == LAMBERT) == is_lambert).collect();
+            for points in points.chunks(LANES) {
+                let receivers: Vec<Receiver<'_>> = points.iter().map(|p| p.receiver(scene, self.clamp)).collect();
+                let gathered = self.gather_together(strategy, points, &receivers, counts);
+                for (point, gathered) in points.iter().zip(gathered) {
+                    let sampled = &mut sampled[point.slot];
+                    sampled.radiance.add(point.vertex + 2, gathered.light);
+                    sampled.cut += gathered.size as f32;
+                    sampled.bound += gathered.bound;
+                }
+            }
+        }
+    }
+
+    /// The light at up to eight points; one alone goes the plain way.
+    fn gather_together(
+        &self,
+        strategy: Strategy,
+        points: &[&Pending],
+        receivers: &[Receiver<'_>],
+        counts: &mut Counts,
+    ) -> [Gathered; LANES] {
+        let Self { tree, settings, references, .. } = self;
+        let simd = receivers[0].scene.simd;
+        let fineness = Fineness { error: settings.cut_error, max_cut: settings.max_cut };
+        let reference = |point: &Pending| references.get(point.pixel as usize).copied();
+        match (receivers, strategy) {
+            ([receiver], Strategy::All) => [receiver.all(tree, counts); LANES],
+            (_, Strategy::All) => Bundle::new(receivers).all(tree, simd, counts),
+            ([receiver], _) => HEAPS.with_borrow_mut(|heaps| {
+                [receiver.cut(tree, fineness, reference(points[0]), &mut heaps.single, counts); LANES]
+            }),
+            _ => {
+                let known = |lane: usize| reference(points[lane.min(points.len() - 1)]).unwrap_or_default();
+                let known: [f32; LANES] = std::array::from_fn(known);
+                let known = (!references.is_empty()).then_some(&known);
+                let bundle = Bundle::new(receivers);
+                HEAPS.with_borrow_mut(|heaps| bundle.cut(tree, fineness, known, &mut heaps.bundle, simd, counts))
+            }
+        }
     }
 
     /// Share of a virtual light's contribution at a distance that the clamp takes away.
@@ -110,15 +192,24 @@ struct Gathering<'a> {
     lightcuts: &'a Lightcuts<'a>,
     pass: &'a SamplePass<'a>,
     strategy: Strategy,
+    slot: usize,
     pixel: u32,
 }
 
 impl Gathering<'_> {
-    /// Takes a path to its next vertex; returns how it goes on from there.
-    fn step(&self, mut walk: Walk, randoms: &mut Randoms, counts: &mut Counts, sampled: &mut Sampled) -> Option<Walk> {
+    /// Takes a path to its next vertex, which its ray has hit; returns how it goes on from there.
+    fn step(
+        &self,
+        mut walk: Walk,
+        hit: Option<Hit>,
+        randoms: &mut Randoms,
+        pending: &mut Vec<Pending>,
+        counts: &mut Counts,
+        sampled: &mut Sampled,
+    ) -> Option<Walk> {
         let SamplePass { scene, caustics, .. } = self.pass;
         let (vertex, ray) = (walk.vertex, walk.ray);
-        let Some(hit) = scene.closest(&ray) else {
+        let Some(hit) = hit else {
             let (light, pdf) = scene.environment_light(ray.direction);
             sampled.radiance.add(vertex, walk.rest * light * Before::weight(walk.before.as_ref(), |_| pdf));
             return None;
@@ -147,10 +238,7 @@ impl Gathering<'_> {
             let light = caustics.gather(&at, |direction| walk.value(scene, &at, direction));
             sampled.radiance.add(vertex + 2, light);
         }
-        let gathered = self.gather(&at, &walk, randoms, counts);
-        sampled.radiance.add(vertex + 2, gathered.light);
-        sampled.cut += gathered.size as f32;
-        sampled.bound += gathered.bound;
+        self.gather(&at, &walk, randoms, pending, counts, sampled);
         let drawn = Drawn { lobes, lights, random: [r0, r1, r2], has_photons: caustics.is_some() };
         let mut next = walk.scatter(scene, &at, hit.t, &drawn)?;
         if vertex + 1 >= SURE_VERTICES {
@@ -167,31 +255,36 @@ impl Gathering<'_> {
         Some(next)
     }
 
-    /// Light of the virtual lights at a vertex.
-    fn gather(&self, at: &Interaction, walk: &Walk, randoms: &mut Randoms, counts: &mut Counts) -> Gathered {
+    /// Adds light of virtual lights that are drawn at a vertex, or leaves the vertex to [`Lightcuts::gather`].
+    fn gather(
+        &self,
+        at: &Interaction,
+        walk: &Walk,
+        randoms: &mut Randoms,
+        pending: &mut Vec<Pending>,
+        counts: &mut Counts,
+        sampled: &mut Sampled,
+    ) {
         let has = gathered_lobes(&at.bsdf);
         let matt = if has & MATT != 0 { walk.matt } else { Vec3::ZERO };
         let glossy = if has & GLOSSY != 0 { walk.rest } else { Vec3::ZERO };
         if matt == Vec3::ZERO && glossy == Vec3::ZERO {
-            return Gathered::default();
+            return;
         }
-        let Lightcuts { tree, settings, clamp, references } = self.lightcuts;
+        let Self { lightcuts: Lightcuts { tree, clamp, .. }, slot, pixel, .. } = *self;
+        let drawn = match self.strategy {
+            _ if !walk.is_first => DRAWN_LIGHTS,
+            Strategy::Stochastic => STOCHASTIC_LIGHTS,
+            _ => {
+                pending.push(Pending { slot, pixel, vertex: walk.vertex, at: *at, matt, glossy });
+                return;
+            }
+        };
         let receiver = Receiver::new(&self.pass.scene, at, matt, glossy, clamp * clamp);
-        if !walk.is_first {
-            let light = receiver.drawn(tree, DRAWN_LIGHTS, || randoms.next()[0], counts);
-            return Gathered { light, ..Gathered::default() };
-        }
-        match self.strategy {
-            Strategy::All => receiver.all(tree, counts),
-            Strategy::Stochastic => {
-                let light = receiver.drawn(tree, STOCHASTIC_LIGHTS, || randoms.next()[0], counts);
-                Gathered { light, size: STOCHASTIC_LIGHTS, bound: 0.0 }
-            }
-            Strategy::Lightcuts | Strategy::LightcutsExhaustive | Strategy::Auto => {
-                let Physical { cut_error, max_cut, .. } = **settings;
-                let reference = references.get(self.pixel as usize).copied();
-                HEAP.with_borrow_mut(|heap| receiver.cut(tree, cut_error, max_cut, reference, heap, counts))
-            }
+        let light = receiver.drawn(tree, drawn, || randoms.next()[0], counts);
+        sampled.radiance.add(walk.vertex + 2, light);
+        if walk.is_first {
+            sampled.cut += drawn as f32;
         }
     }
 }

@@ -20,7 +20,7 @@ pub(crate) const TILE_SIZE: u32 = 16;
 const MOST_CANVASES: usize = 8;
 
 /// Degrees of freedom that the whole picture has beside a tile's own in the estimate of a variance.
-const PICTURE_FREEDOM: f64 = 8.0;
+const PICTURE_FREEDOM: f64 = 64.0;
 
 /// Brightness below which errors count no more, relative to the picture's mean.
 const DARK: f64 = 0.8;

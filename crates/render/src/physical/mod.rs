@@ -1,5 +1,6 @@
 //! The physical model: path tracing, and indirect light from virtual point lights through error-bounded cuts.
 
+mod bundle;
 mod caustics;
 mod cluster_tree;
 mod direct;

@@ -15,8 +15,9 @@ use lightcuts_kernel::bsdf::{CONDUCTOR, DIELECTRIC, MIRROR, PHONG};
 use lightcuts_kernel::cluster::light_power;
 use lightcuts_kernel::fresnel::fresnel_conductor;
 use lightcuts_kernel::lens::{Lens, lens_ray, pixel_spread, pixel_width};
-use lightcuts_kernel::ray::Ray;
+use lightcuts_kernel::ray::{Hit, Ray};
 use lightcuts_kernel::rng::random4;
+use lightcuts_world::bvh::LANES;
 use std::time::Instant;
 
 /// Rays by kind, and what was gathered.
@@ -185,11 +186,12 @@ impl Extent {
     }
 }
 
-/// Pixels of a probe: one in each cell of a grid over the tile.
-const PROBE_GRID: [u32; 2] = [4, 2];
+/// Parts of a tile, side by side, of each of which a probe sees a square of two by two pixels: neighbours, as techniques are
+/// quickest with them.
+const PROBED_PARTS: u32 = 2;
 
-/// Their number, at most.
-pub(crate) const PROBED_PIXELS: usize = (PROBE_GRID[0] * PROBE_GRID[1]) as usize;
+/// Pixels of a probe, at most.
+pub(crate) const PROBED_PIXELS: usize = 4 * PROBED_PARTS as usize;
 
 /// What a pass is: everything that its samples share.
 pub(crate) struct SamplePass<'a> {
@@ -221,6 +223,18 @@ pub(crate) struct SampledTile {
     pub(crate) counts: Counts,
     /// Processor time that it took.
     pub(crate) seconds: f64,
+}
+
+/// A sample that is to be taken.
+pub(crate) struct Start {
+    /// Its place among those that are taken together.
+    pub(crate) slot: usize,
+    pub(crate) pixel: u32,
+    pub(crate) ray: Ray,
+    pub(crate) cone: Cone,
+    /// What the ray hits.
+    pub(crate) hit: Option<Hit>,
+    pub(crate) randoms: Randoms,
 }
 
 /// What a camera ray brings.
@@ -260,40 +274,63 @@ impl SamplePass<'_> {
         };
         match task.extent {
             Extent::Whole(samples) => {
-                for (k, place) in tile.pixels().enumerate() {
-                    (0..samples).for_each(|_| self.sample_pixel(k, place, technique, points, &mut result));
+                for block in blocks(tile) {
+                    for _ in 0..samples {
+                        self.sample_pixels(&block, technique, points, &mut result);
+                    }
                 }
             }
             Extent::Probe(_) => {
-                for (k, place) in probed(tile) {
-                    self.sample_pixel(k, place, technique, points, &mut result);
-                }
+                self.sample_pixels(&probed(tile).collect::<Vec<_>>(), technique, points, &mut result);
             }
         }
         result.seconds = clock.seconds();
         result
     }
 
-    fn sample_pixel(
+    /// Takes a sample of each of up to eight pixels, which have their places in the tile.
+    fn sample_pixels(
         &self,
-        k: usize,
-        (i, j): (u32, u32),
+        pixels: &[(usize, (u32, u32))],
         technique: Technique,
         points: Points<'_>,
         result: &mut SampledTile,
     ) {
-        let pixel = j * self.lens.width + i;
-        let before = points.part.map_or(points.first, |part| part.samples_before(pixel));
-        let number = before + result.moments[k].samples;
-        let mut randoms = Randoms::new(pixel, number, points.stream);
-        let [x, y, u, v] = randoms.next();
-        let place = [i as f32 + x, j as f32 + y];
-        let ray = lens_ray(&self.lens, place, [u, v]);
         let cone = Cone { width: pixel_width(&self.lens), spread: pixel_spread(&self.lens) };
-        result.counts.primary += 1;
-        let sampled = technique.sample(self, ray, cone, pixel, &mut randoms, &mut result.counts);
-        let Sampled { radiance, first, cut, bound } = sampled;
-        let shift = [x - 0.5, y - 0.5];
+        let mut starts = Vec::with_capacity(LANES);
+        let mut shifts = [[0.0; 2]; LANES];
+        for (slot, &(k, (i, j))) in pixels.iter().enumerate() {
+            let pixel = j * self.lens.width + i;
+            let before = points.part.map_or(points.first, |part| part.samples_before(pixel));
+            let mut randoms = Randoms::new(pixel, before + result.moments[k].samples, points.stream);
+            let [x, y, u, v] = randoms.next();
+            let ray = lens_ray(&self.lens, [i as f32 + x, j as f32 + y], [u, v]);
+            shifts[slot] = [x - 0.5, y - 0.5];
+            starts.push(Start { slot, pixel, ray, cone, hit: None, randoms });
+        }
+        let hits = self.scene.closest8(&std::array::from_fn(|lane| starts[lane.min(starts.len() - 1)].ray));
+        result.counts.primary += starts.len() as u64;
+        let mut pending = Vec::new();
+        let mut sample =
+            |(start, hit)| technique.sample(self, Start { hit, ..start }, &mut pending, &mut result.counts);
+        let mut sampled: Vec<Sampled> = starts.into_iter().zip(hits).map(&mut sample).collect();
+        technique.gather(self, &mut pending, &mut sampled, &mut result.counts);
+        for ((&(k, place), shift), sampled) in pixels.iter().zip(shifts).zip(&sampled) {
+            self.add(k, place, shift, sampled, technique, result);
+        }
+    }
+
+    /// Adds a sample to what its tile yields.
+    fn add(
+        &self,
+        k: usize,
+        (i, j): (u32, u32),
+        shift: [f32; 2],
+        sampled: &Sampled,
+        technique: Technique,
+        result: &mut SampledTile,
+    ) {
+        let Sampled { radiance, first, cut, bound } = *sampled;
         result.all.add(self.filter, i, j, shift, radiance.all);
         result.indirect.add(self.filter, i, j, shift, radiance.indirect);
         let brightness = f64::from(light_power(radiance.all)) / 3.0;
@@ -309,19 +346,31 @@ impl SamplePass<'_> {
     }
 }
 
+/// A tile's pixels in blocks of up to eight neighbours, each with its place in the tile.
+fn blocks(tile: &Tile) -> impl Iterator<Item = Vec<(usize, (u32, u32))>> {
+    const SIZE: [u32; 2] = [4, 2];
+    let Tile { i, j, width, height } = *tile;
+    let corners = (0..height)
+        .step_by(SIZE[1] as usize)
+        .flat_map(move |y| (0..width).step_by(SIZE[0] as usize).map(move |x| (x, y)));
+    corners.map(move |(left, bottom)| {
+        let rows = bottom..(bottom + SIZE[1]).min(height);
+        let columns = left..(left + SIZE[0]).min(width);
+        rows.flat_map(|y| columns.clone().map(move |x| ((y * width + x) as usize, (i + x, j + y)))).collect()
+    })
+}
+
 /// The pixels of a probe, each with its place in the tile: always the same ones, so that their samples can be compared.
 pub(crate) fn probed(tile: &Tile) -> impl Iterator<Item = (usize, (u32, u32))> {
     let Tile { i, j, width, height } = *tile;
-    let [columns, rows] = PROBE_GRID;
-    (0..columns * rows).filter_map(move |cell| {
-        let [u, v, ..] = random4(cell, 0, i, j);
-        let along = |length: u32, cells: u32, cell: u32, random: f32| {
-            let (first, end) = (length * cell / cells, length * (cell + 1) / cells);
-            (first < end).then(|| first + ((end - first) as f32 * random) as u32)
-        };
-        let column = along(width, columns, cell % columns, u)?;
-        let row = along(height, rows, cell / columns, v)?;
-        Some(((row * width + column) as usize, (i + column, j + row)))
+    (0..PROBED_PARTS).flat_map(move |part| {
+        let [u, v, ..] = random4(part, 0, i, j);
+        let (first, end) = (width * part / PROBED_PARTS, width * (part + 1) / PROBED_PARTS);
+        let place = |places: u32, random: f32| (places.saturating_sub(1) as f32 * random) as u32;
+        let (left, bottom) = (first + place(end - first, u), place(height, v));
+        let rows = bottom..(bottom + 2).min(height);
+        let columns = left..(left + 2).min(end);
+        rows.flat_map(move |y| columns.clone().map(move |x| ((y * width + x) as usize, (i + x, j + y))))
     })
 }
 

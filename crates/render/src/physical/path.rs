@@ -2,12 +2,10 @@
 //! (Veach 1997).
 
 use super::direct::{Before, DirectLight};
-use super::pass::{Counts, FirstHit, SamplePass};
-use super::randoms::Randoms;
+use super::pass::{Counts, FirstHit, SamplePass, Start};
 use super::scene::{Cone, Interaction};
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{ALL_LOBES, SPECULAR, Transport};
-use lightcuts_kernel::ray::Ray;
 
 /// Vertices after which paths end by chance.
 const SURE_VERTICES: u32 = 4;
@@ -15,23 +13,17 @@ const SURE_VERTICES: u32 = 4;
 /// Vertices after which they end at all: no path of weight gets there.
 pub(crate) const MAX_VERTICES: u32 = 4096;
 
-/// The radiance against a ray, what it first met, and how much light is indirect.
-pub(crate) fn trace_path(
-    pass: &SamplePass<'_>,
-    ray: Ray,
-    cone: Cone,
-    randoms: &mut Randoms,
-    counts: &mut Counts,
-) -> (Radiance, Option<FirstHit>) {
+/// The radiance against a camera ray, what it first met, and how much light is indirect.
+pub(crate) fn trace_path(pass: &SamplePass<'_>, start: Start, counts: &mut Counts) -> (Radiance, Option<FirstHit>) {
     let SamplePass { scene, caustics, .. } = pass;
     let tables = &scene.world.tables[..];
-    let (mut ray, mut cone) = (ray, cone);
+    let Start { mut ray, mut cone, hit: mut next, mut randoms, .. } = start;
     let mut throughput = Vec3::ONE;
     let mut sum = Radiance::default();
     let mut first = None;
     let mut before: Option<Before> = None;
     for vertex in 0..MAX_VERTICES {
-        let Some(hit) = scene.closest(&ray) else {
+        let Some(hit) = next else {
             let (light, pdf) = scene.environment_light(ray.direction);
             sum.add(vertex, throughput * light * Before::weight(before.as_ref(), |_| pdf));
             break;
@@ -68,6 +60,7 @@ pub(crate) fn trace_path(
         let (is_focused, is_spread) = Before::course(before.as_ref(), &at, sample.lobe, caustics.is_some());
         before = Some(Before { at, pdf: sample.pdf, lights: 1, is_focused, is_spread });
         ray = at.ray(sample.wi, f32::INFINITY);
+        next = scene.closest(&ray);
         counts.bounces += 1;
     }
     (sum, first)

@@ -11,12 +11,11 @@ use super::technique::Technique;
 /// Probes after which techniques are known a little: two samples in each half.
 const FIRST_PROBES: u32 = 4;
 
-/// Share of a tile's time for those, and for later ones.
-const FIRST_SHARE: f64 = 0.15;
-const LATER_SHARE: f64 = 0.05;
+/// Share of a tile's time for later ones.
+const PROBE_SHARE: f64 = 0.03;
 
 /// A tile gets at least and at most so many times the mean number of samples.
-const RATES: [f64; 2] = [0.25, 4.0];
+const RATES: [f64; 2] = [0.5, 2.0];
 
 /// Decides for a render.
 pub(crate) struct Plan {
@@ -77,7 +76,9 @@ impl Plan {
         let mut tasks = Vec::new();
         for (tile, (choice, rate)) in choices.iter().zip(rates).enumerate() {
             let plan = &mut self.tiles[tile];
-            plan.due += rate;
+            // Until something is known, time is better spent on getting to know it.
+            let is_asking = pass > 0 && plan.probes < FIRST_PROBES;
+            plan.due += if is_asking { 0.0 } else { rate };
             let samples = plan.due as u32;
             plan.due -= f64::from(samples);
             if samples > 0 {
@@ -86,8 +87,7 @@ impl Plan {
                 tasks.push(Task { tile, technique: choice.technique, half: halves[tile], extent });
             }
             // Cuts need to know what a pixel's light is.
-            let share = if plan.probes < FIRST_PROBES { FIRST_SHARE } else { LATER_SHARE };
-            if pass > 0 && plan.probe_seconds <= share * plan.seconds {
+            if is_asking || (pass > 0 && plan.probe_seconds <= PROBE_SHARE * plan.seconds) {
                 // All of them, the chosen one too: with more samples it would show more of its rare bright ones, and seem worse.
                 let (half, extent) = (mixture.half_of(plan.probes), Extent::Probe(plan.probes / 2));
                 tasks.extend((0..self.techniques.len()).map(|technique| Task { tile, technique, half, extent }));

@@ -1,6 +1,6 @@
 //! Rays against a physical world, and what they find.
 
-use crate::cpu::{Simd, Tracer};
+use crate::cpu::{RayLanes, Simd, Tracer};
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::bsdf::{Bsdf, BsdfSample, DIELECTRIC, Transport, bsdf_pdf, bsdf_value, sample_bsdf};
@@ -14,6 +14,7 @@ use lightcuts_kernel::scatter::{
 use lightcuts_kernel::surface::{Surface, surface_at};
 use lightcuts_kernel::texture::surface_point;
 use lightcuts_world::PhysicalWorld;
+use lightcuts_world::bvh::LANES;
 
 /// Surfaces with holes that a ray may pass through, one behind the other.
 const MAX_HOLES: u32 = 1024;
@@ -24,6 +25,7 @@ pub(crate) struct Scene<'a> {
     pub(crate) world: &'a PhysicalWorld,
     pub(crate) environment: Option<EnvironmentMap<'a>>,
     tracer: Tracer<'a>,
+    pub(crate) simd: Simd,
     images: Images<'a>,
 }
 
@@ -74,6 +76,7 @@ impl<'a> Scene<'a> {
             world,
             environment: world.environment_map(),
             tracer: Tracer::new(world.shapes.geometry(), Rules::Repaired, simd),
+            simd,
             images: world.all_images(),
         }
     }
@@ -97,6 +100,19 @@ impl<'a> Scene<'a> {
     /// Whether nothing lies between the ray's ends.
     pub(crate) fn is_free(&self, ray: &Ray) -> bool {
         if self.world.has_masks { self.closest(ray).is_none() } else { !self.tracer.occluded(ray) }
+    }
+
+    /// The nearest hits of rays that go much the same way; holes let rays through.
+    pub(crate) fn closest8(&self, rays: &[Ray; LANES]) -> [Option<Hit>; LANES] {
+        if self.world.has_masks {
+            return rays.map(|ray| self.closest(&ray));
+        }
+        self.tracer.closest8(rays).map(|hit| hit.is_some().then_some(hit))
+    }
+
+    /// Which of the rays in `asked`, a bit each, something lies between the ends of. Holes are not looked at.
+    pub(crate) fn occluded_lanes(&self, rays: &RayLanes, asked: u32) -> u32 {
+        self.tracer.occluded_lanes(rays, asked)
     }
 
     fn is_there(&self, ray: &Ray, hit: &Hit) -> bool {

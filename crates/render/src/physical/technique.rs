@@ -1,11 +1,9 @@
 //! The ways to find light, behind one function.
 
-use super::pass::{Counts, SamplePass, Sampled};
+use super::lightcuts::Pending;
+use super::pass::{Counts, SamplePass, Sampled, Start};
 use super::path::trace_path;
-use super::randoms::Randoms;
-use super::scene::Cone;
 use crate::settings::{Integrator, Settings, Strategy};
-use lightcuts_kernel::ray::Ray;
 
 /// A way to find light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,20 +37,33 @@ impl Technique {
         matches!(self, Self::Vpls(_))
     }
 
-    /// The light against a camera ray. Without VPLs there is none from them.
+    /// The light against a camera ray. Without VPLs there is none from them; what they send at some points is left to
+    /// [`Technique::gather`], which is to follow.
     pub(crate) fn sample(
         self,
         pass: &SamplePass<'_>,
-        ray: Ray,
-        cone: Cone,
-        pixel: u32,
-        randoms: &mut Randoms,
+        start: Start,
+        pending: &mut Vec<Pending>,
         counts: &mut Counts,
     ) -> Sampled {
         if let (Self::Vpls(strategy), Some(vpls)) = (self, &pass.vpls) {
-            return vpls.sample(pass, strategy, ray, cone, pixel, randoms, counts);
+            return vpls.sample(pass, strategy, start, pending, counts);
         }
-        let (radiance, first) = trace_path(pass, ray, cone, randoms, counts);
+        let (radiance, first) = trace_path(pass, start, counts);
         Sampled { radiance, first, cut: 0.0, bound: 0.0 }
+    }
+
+    /// Adds the light of the VPLs at points that samples have left, and forgets the points.
+    pub(crate) fn gather(
+        self,
+        pass: &SamplePass<'_>,
+        pending: &mut Vec<Pending>,
+        sampled: &mut [Sampled],
+        counts: &mut Counts,
+    ) {
+        if let (Self::Vpls(strategy), Some(vpls)) = (self, &pass.vpls) {
+            vpls.gather(&pass.scene, strategy, pending, sampled, counts);
+        }
+        pending.clear();
     }
 }

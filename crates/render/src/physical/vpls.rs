@@ -55,6 +55,6 @@ fn virtual_light(arrival: &Arrival<'_>, tables: &[f32]) -> Option<VirtualLight> 
         normal: at.face * side,
         shading: pack_direction(at.normal * side),
         intensity,
-        padding: 0,
+        is_bent: u32::from(at.normal != at.face),
     })
 }

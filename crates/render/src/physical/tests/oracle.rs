@@ -2,36 +2,52 @@
 
 use super::scenes::{glossy_room, room};
 use crate::cpu::Simd;
+use crate::physical::bundle::{Bundle, BundleHeap, Fineness};
 use crate::physical::cluster_tree::ClusterTree;
 use crate::physical::emission::Origins;
-use crate::physical::gather::{CutHeap, Receiver};
+use crate::physical::gather::{CutHeap, Gathered, Receiver};
 use crate::physical::lightcuts::gathered_lobes;
 use crate::physical::pass::Counts;
-use crate::physical::scene::{Cone, Scene};
+use crate::physical::scene::{Cone, Interaction, Scene};
 use crate::physical::vpls::trace_vpls;
 use glam::Vec3;
 use lightcuts_kernel::cluster::light_power;
 use lightcuts_kernel::lens::lens_ray;
 use lightcuts_kernel::virtual_light::VirtualLight;
 use lightcuts_world::PhysicalWorld;
+use lightcuts_world::bvh::LANES;
 
 /// The distance below which light no longer grows, squared.
 const CLAMP_SQ: f32 = 0.0025;
 
-/// Looks at every pixel of a scene that gathers virtual lights; returns how many there are.
-fn at_every_pixel(scene: &Scene<'_>, size: u32, mut look: impl FnMut(Receiver<'_>, (u32, u32))) -> u32 {
+/// What every pixel of a scene shows that gathers virtual lights.
+fn every_pixel(scene: &Scene<'_>, size: u32) -> Vec<((u32, u32), Interaction)> {
     let lens = scene.world.lens(size, size);
-    let mut pixels = 0;
-    for (i, j) in (0..size).flat_map(|j| (0..size).map(move |i| (i, j))) {
+    let see = |(i, j): (u32, u32)| {
         let ray = lens_ray(&lens, [i as f32 + 0.5, j as f32 + 0.5], [0.0; 2]);
-        let Some(hit) = scene.closest(&ray) else { continue };
-        let at = scene.interaction(&ray, &hit, Cone::NONE, 0.5);
-        if gathered_lobes(&at.bsdf) != 0 {
-            look(Receiver::new(scene, &at, Vec3::ONE, Vec3::ONE, CLAMP_SQ), (i, j));
-            pixels += 1;
-        }
+        let at = scene.interaction(&ray, &scene.closest(&ray)?, Cone::NONE, 0.5);
+        (gathered_lobes(&at.bsdf) != 0).then_some(((i, j), at))
+    };
+    (0..size).flat_map(|j| (0..size).map(move |i| (i, j))).filter_map(see).collect()
+}
+
+fn receiver<'a>(scene: &'a Scene<'a>, at: &'a Interaction) -> Receiver<'a> {
+    Receiver::new(scene, at, Vec3::ONE, Vec3::ONE, CLAMP_SQ)
+}
+
+fn fineness(error: f32) -> Fineness {
+    Fineness { error, max_cut: u32::MAX }
+}
+
+/// Checks a cut against all lights, by the definition of its bound.
+fn check(all: Vec3, cut: &Gathered, error: f32, what: &str) {
+    let difference = (light_power(cut.light) - light_power(all)).abs();
+    let rounding = 2e-4 * light_power(all);
+    assert!(difference <= cut.bound + rounding, "{what}: {difference} > {}", cut.bound);
+    if error == 0.0 {
+        assert!(difference <= rounding, "{what}: {difference}");
+        assert_eq!(cut.bound, 0.0, "{what}");
     }
-    pixels
 }
 
 /// The tree over what light paths leave.
@@ -61,28 +77,26 @@ fn every_cut_is_within_its_bound() {
         let size = if paths > 1000 { 12 } else { 24 };
         let (mut heap, mut counts) = (CutHeap::default(), Counts::default());
         let (mut closest, mut sizes) = (0.0_f32, 0);
-        let pixels = at_every_pixel(&scene, size, |receiver, pixel| {
+        let points = every_pixel(&scene, size);
+        for (pixel, at) in &points {
+            let receiver = receiver(&scene, at);
             let all = receiver.all(&tree, &mut counts).light;
             for error in [0.3, 0.02, 0.0] {
-                let cut = receiver.cut(&tree, error, u32::MAX, None, &mut heap, &mut counts);
-                let difference = (light_power(cut.light) - light_power(all)).abs();
-                let rounding = 2e-4 * light_power(all);
-                assert!(difference <= cut.bound + rounding, "{name} {pixel:?}: {difference} > {}", cut.bound);
-                if error == 0.0 {
-                    assert!(difference <= rounding, "{name} {pixel:?}: {difference}");
-                    assert!(cut.bound == 0.0);
-                } else if cut.bound > 0.0 {
-                    closest = closest.max(difference / cut.bound);
+                let cut = receiver.cut(&tree, fineness(error), None, &mut heap, &mut counts);
+                check(all, &cut, error, &format!("{name} {pixel:?}"));
+                if cut.bound > 0.0 {
+                    closest = closest.max((light_power(cut.light) - light_power(all)).abs() / cut.bound);
                 }
                 if error == 0.02 {
                     sizes += cut.size;
                 }
             }
-        });
+        }
+        let pixels = points.len();
         println!(
             "{name}, {} lights: {pixels} pixels, {:.0} in a cut of 2 %, the closest reaches {closest:.2} of its bound",
             tree.lights.len(),
-            f64::from(sizes) / f64::from(pixels),
+            f64::from(sizes) / pixels as f64,
         );
         assert!(pixels > 100);
     }
@@ -103,14 +117,55 @@ fn every_light_is_in_one_cluster_of_a_cut() {
     let tree = ClusterTree::build(&lights, 4);
     let (mut heap, mut counts) = (CutHeap::default(), Counts::default());
     let mut lit = 0;
-    at_every_pixel(&scene, 12, |receiver, pixel| {
+    for (pixel, at) in every_pixel(&scene, 12) {
+        let receiver = receiver(&scene, &at);
         let all = light_power(receiver.all(&tree, &mut counts).light);
         lit += u32::from(all > 0.0);
         for max_cut in [1, 2, 9, 100, u32::MAX] {
-            let cut = receiver.cut(&tree, 0.0, max_cut, None, &mut heap, &mut counts);
+            let fineness = Fineness { error: 0.0, max_cut };
+            let cut = receiver.cut(&tree, fineness, None, &mut heap, &mut counts);
             assert!((light_power(cut.light) - all).abs() <= 2e-4 * all, "{pixel:?}, at most {max_cut}");
             assert!(cut.size <= max_cut.max(2));
         }
-    });
+    }
     assert!(lit > 20);
+}
+
+/// Eight points at once: the sum over all lights is that of each point, cuts are within their bounds, and instructions for eight
+/// numbers change no bit.
+#[test]
+fn points_that_are_lit_together_are_lit_as_each_is() {
+    for (name, room, paths) in
+        [("open", room(false), 280), ("occluded", room(true), 280), ("glossy", glossy_room(), 280)]
+    {
+        let world = PhysicalWorld::new(&room).unwrap();
+        let scenes = [Simd::Auto, Simd::Off].map(|simd| Scene::new(&world, simd));
+        let origins = Origins::new(&scenes[0]).unwrap();
+        let tree = tree(&scenes[0], &origins, paths, 3);
+        let (mut heap, mut counts) = (BundleHeap::default(), Counts::default());
+        let points = every_pixel(&scenes[0], 22);
+        for (number, points) in points.chunks(LANES).enumerate() {
+            let bundles = scenes.each_ref().map(|scene| {
+                let receivers: Vec<_> = points.iter().map(|(_, at)| receiver(scene, at)).collect();
+                Bundle::new(&receivers)
+            });
+            let [wide, plain] = [0, 1].map(|k| bundles[k].all(&tree, scenes[k].simd, &mut counts));
+            assert_eq!(wide, plain, "{name} {number}");
+            let each: Vec<Vec3> =
+                points.iter().map(|(_, at)| receiver(&scenes[0], at).all(&tree, &mut counts).light).collect();
+            for (lane, &all) in each.iter().enumerate() {
+                let difference = (wide[lane].light - all).abs().max_element();
+                assert!(difference <= 2e-5 * all.max_element(), "{name} {number} {lane}: {difference}");
+            }
+            let known: [f32; LANES] = std::array::from_fn(|lane| each.get(lane).map_or(0.0, |&all| light_power(all)));
+            for (error, known) in [(0.3, None), (0.02, None), (0.02, Some(&known)), (0.0, None)] {
+                let [wide, plain] = [0, 1]
+                    .map(|k| bundles[k].cut(&tree, fineness(error), known, &mut heap, scenes[k].simd, &mut counts));
+                assert_eq!(wide, plain, "{name} {number}");
+                for (lane, &all) in each.iter().enumerate() {
+                    check(all, &wide[lane], error, &format!("{name} {number} {lane}"));
+                }
+            }
+        }
+    }
 }
