@@ -17,6 +17,9 @@ const PROBE_SHARE: f64 = 0.03;
 /// A tile gets at least and at most so many times the mean number of samples.
 const RATES: [f64; 2] = [0.5, 2.0];
 
+/// What the variance of paths is taken to be more than few samples show: they miss rare bright ones, which VPLs leave out.
+const RARE: f64 = 2.0;
+
 /// Decides for a render.
 pub(crate) struct Plan {
     techniques: Vec<Technique>,
@@ -78,7 +81,14 @@ impl Plan {
             let plan = &mut self.tiles[tile];
             // Until something is known, time is better spent on getting to know it.
             let is_asking = pass > 0 && plan.probes < FIRST_PROBES;
-            plan.due += if is_asking { 0.0 } else { rate };
+            // The first choice is for every tile.
+            plan.due += if is_asking {
+                0.0
+            } else if plan.turns == 1 {
+                1.0
+            } else {
+                rate
+            };
             let samples = plan.due as u32;
             plan.due -= f64::from(samples);
             if samples > 0 {
@@ -100,7 +110,8 @@ impl Plan {
     /// The technique with the smallest product of variance and time; the first as long as nothing is known.
     fn choose(&self, mixture: &Mixture, half: usize, tile: usize) -> Choice {
         let known = |technique: usize| {
-            let variance = mixture.variance_for(technique, half, tile)?;
+            let unseen = if self.techniques[technique].uses_vpls() { 1.0 } else { RARE };
+            let variance = mixture.variance_for(technique, half, tile)? * unseen;
             let seconds = self.seconds(tile, technique)?;
             Some((technique, variance, seconds))
         };

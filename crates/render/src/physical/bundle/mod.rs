@@ -3,19 +3,22 @@
 //! Points of neighbouring pixels need much the same cut, and rays from them to one light go much the same way. So a cluster is
 //! bounded for all of them at once, and opened where the bound is too much for any.
 
+mod bound;
+mod light;
+mod vectors;
+
 use super::cluster_tree::ClusterTree;
 use super::gather::{Gathered, Receiver, representative_of};
 use super::pass::Counts;
-use crate::cpu::{Lanes, Plain, RayLanes, Simd};
+use crate::cpu::{Lanes, Plain, Simd};
 use glam::Vec3;
 use lightcuts_kernel::bsdf::LAMBERT;
-use lightcuts_kernel::cluster::{BOUND_MARGIN, ClusterNode, LIGHT_CHILD, light_power, reach_bound};
-use lightcuts_kernel::ray::{NONE, RELATIVE_EPSILON};
+use lightcuts_kernel::cluster::{LIGHT_CHILD, light_power};
 use lightcuts_kernel::sampling::frame;
-use lightcuts_kernel::virtual_light::{VirtualLight, shading_normal, virtual_emission};
 use lightcuts_world::bvh::LANES;
 use std::collections::BinaryHeap;
 use std::f32::consts::PI;
+use vectors::{Wide3, add, divided, loaded, scaled, stored, sub};
 
 /// A vector for each point, by axes.
 type Vectors = [[f32; LANES]; 3];
@@ -64,8 +67,17 @@ pub(crate) struct BundleHeap {
     order: BinaryHeap<(u32, u32)>,
 }
 
-/// Three lanes of numbers.
-type Wide3<L> = [L; 3];
+impl BundleHeap {
+    /// Orders the clusters anew.
+    #[inline(always)]
+    fn reorder(&mut self, relative: impl Fn(&[f32; LANES]) -> f32) {
+        let mut order = std::mem::take(&mut self.order).into_vec();
+        for (key, place) in &mut order {
+            *key = relative(&self.entries[*place as usize].bound).to_bits();
+        }
+        self.order = order.into();
+    }
+}
 
 impl<'a> Bundle<'a> {
     /// Whether a point can be computed with others at once.
@@ -183,12 +195,22 @@ impl<'a> Bundle<'a> {
         let mut cut = Cut { done: [zero; 3], open: [zero; 3], size: 0, references: references.map(|r| L::load(r)) };
         let unit = self.representative(tree, root, counts);
         self.place(tree, root, unit, heap, &mut cut, counts);
+        // Whether the order is by the light of all as it is now: where it is what was gathered so far, it changes.
+        let mut is_fresh = true;
         while let Some(&(_, worst)) = heap.order.peek() {
-            let entry = heap.entries[worst as usize];
-            let is_fine = cut.relative(&entry.bound, self.asked()) <= fineness.error;
-            if is_fine || cut.size + heap.order.len() as u32 >= fineness.max_cut {
+            if cut.size + heap.order.len() as u32 >= fineness.max_cut {
                 break;
             }
+            let entry = heap.entries[worst as usize];
+            if cut.relative(&entry.bound, self.asked()) <= fineness.error {
+                if is_fresh || references.is_some() {
+                    break;
+                }
+                heap.reorder(|bound| cut.relative(bound, self.asked()));
+                is_fresh = true;
+                continue;
+            }
+            is_fresh = false;
             heap.order.pop();
             let node = tree.nodes[entry.node as usize];
             let unit: Wide3<L> = loaded(&entry.unit);
@@ -247,131 +269,6 @@ impl<'a> Bundle<'a> {
         divided(self.light(light, counts), power)
     }
 
-    /// What a light sends to each point.
-    #[inline(always)]
-    fn light<L: Lanes>(&self, light: &VirtualLight, counts: &mut Counts) -> Wide3<L> {
-        let zero = L::splat(0.0);
-        let sent: Wide3<L> = if self.is_lambert { self.unshadowed(light) } else { self.unshadowed_each(light) };
-        let asked = sent[0].max(sent[1]).max(sent[2]).greater(zero).bits() & self.asked();
-        if asked == 0 {
-            return [zero; 3];
-        }
-        counts.shadow += u64::from(asked.count_ones());
-        let visible = L::mask(self.visible::<L>(light.position, asked));
-        [sent[0].and(visible), sent[1].and(visible), sent[2].and(visible)]
-    }
-
-    /// What a light sends if nothing is between, to points of Lambert's material; twin of [`Receiver::unshadowed`].
-    #[inline(always)]
-    fn unshadowed<L: Lanes>(&self, light: &VirtualLight) -> Wide3<L> {
-        let zero = L::splat(0.0);
-        let to_light: Wide3<L> = sub(splat3(light.position), loaded(&self.point));
-        let distance_sq = dot(to_light, to_light);
-        let distance = distance_sq.sqrt();
-        let direction = divided(to_light, distance);
-        let cos_light = zero - dot(splat3(light.normal), direction);
-        let cos = dot(loaded(&self.normal), direction);
-        let cos_face = dot(loaded(&self.face), direction);
-        let mut facing = cos_light.min(cos).min(cos_face);
-        if light.is_bent != 0 {
-            facing = facing.min(zero - dot(splat3(shading_normal(light)), direction));
-        }
-        let emitted = if light.table == NONE {
-            cos_light
-        } else {
-            let direction = stored(direction);
-            let tables = &self.receivers[0].scene.world.tables[..];
-            let each = |lane: usize| -Vec3::new(direction[0][lane], direction[1][lane], direction[2][lane]);
-            L::load(&std::array::from_fn(|lane| virtual_emission(light, tables, each(lane))))
-        };
-        let clamped = distance_sq.max(L::splat(self.receivers[0].bound.clamp_sq));
-        let geometry = (emitted / clamped).and(facing.greater(zero));
-        let color: Wide3<L> = loaded(&self.color);
-        scaled(product(scaled(color, cos), splat3(light.intensity)), geometry)
-    }
-
-    /// The same one by one, for points of any material.
-    #[inline(always)]
-    fn unshadowed_each<L: Lanes>(&self, light: &VirtualLight) -> Wide3<L> {
-        let mut sent = [[0.0; LANES]; 3];
-        for (lane, receiver) in self.receivers[..self.count].iter().enumerate() {
-            let light = receiver.unshadowed(light);
-            (0..3).for_each(|axis| sent[axis][lane] = light[axis]);
-        }
-        loaded(&sent)
-    }
-
-    /// Which of the points in `asked`, a bit each, see a place; twin of `Interaction::ray_to`.
-    #[inline(always)]
-    fn visible<L: Lanes>(&self, target: Vec3, asked: u32) -> u32 {
-        // Lights are off their surface already.
-        let target_epsilon = RELATIVE_EPSILON * target.abs().max_element();
-        let scene = self.receivers[0].scene;
-        if scene.world.has_masks {
-            let is_free = |lane: &usize| {
-                asked >> lane & 1 == 1 && scene.is_free(&self.receivers[*lane].at.ray_to(target, target_epsilon))
-            };
-            return (0..self.count).filter(is_free).fold(0, |bits, lane| bits | 1 << lane);
-        }
-        let (point, face, epsilon) = (loaded(&self.point), loaded(&self.face), L::load(&self.epsilon));
-        let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let is_behind = zero.greater(dot(face, sub(splat3(target), point)));
-        let side = L::select(is_behind, zero - epsilon, epsilon);
-        let origin = add(point, scaled(face, side));
-        let direction = sub(splat3(target), origin);
-        let length = dot(direction, direction).sqrt().max(L::splat(f32::MIN_POSITIVE));
-        let end = one - L::splat(2.0) * (epsilon + L::splat(target_epsilon)) / length;
-        let rays = RayLanes { origin: stored(origin), direction: stored(direction), t_max: end.max(zero).store() };
-        asked & !scene.occluded_lanes(&rays, asked)
-    }
-
-    /// At most so much light, as a sum of channels, comes from a cluster to each point.
-    #[inline(always)]
-    fn bound<L: Lanes>(&self, tree: &ClusterTree, node: u32, counts: &mut Counts) -> L {
-        if self.is_lambert {
-            counts.bounds += self.count as u64;
-            return self.lambert_bound(&tree.nodes[node as usize]);
-        }
-        let mut bounds = [0.0; LANES];
-        for (bound, receiver) in bounds.iter_mut().zip(&self.receivers[..self.count]) {
-            *bound = reach_bound(&receiver.reach(tree, node, counts));
-        }
-        L::load(&bounds)
-    }
-
-    /// The same for points of Lambert's material; twin of `cluster_reach` and `reach_bound`.
-    #[inline(always)]
-    fn lambert_bound<L: Lanes>(&self, node: &ClusterNode) -> L {
-        let zero = L::splat(0.0);
-        let half = (node.upper - node.lower) * 0.5;
-        let center: Wide3<L> = sub(splat3((node.upper + node.lower) * 0.5), loaded(&self.point));
-        let wide_half: Wide3<L> = splat3(half);
-        let mut nearest_sq = zero;
-        for axis in 0..3 {
-            let outside = (center[axis].abs() - wide_half[axis]).max(zero);
-            nearest_sq = nearest_sq + outside * outside;
-        }
-        let nearest_sq = nearest_sq.max(L::splat(self.receivers[0].bound.clamp_sq.max(f32::MIN_POSITIVE)));
-        let from_light = sub([zero; 3], center);
-        let (tangent, bitangent) = frame(node.axis);
-        let emitted = box_cosine(
-            [dot(splat3(node.axis), from_light), dot(splat3(tangent), from_light), dot(splat3(bitangent), from_light)],
-            splat3(Vec3::new(node.axis.abs().dot(half), tangent.abs().dot(half), bitangent.abs().dot(half))),
-        );
-        let emitted = widened_cosine(emitted, node.cos_cone);
-        let (normal, tangents) = (loaded(&self.normal), [loaded(&self.tangents[0]), loaded(&self.tangents[1])]);
-        let cos_normal = box_cosine(
-            [dot(normal, center), dot(tangents[0], center), dot(tangents[1], center)],
-            [
-                dot(absolute(normal), wide_half),
-                dot(absolute(tangents[0]), wide_half),
-                dot(absolute(tangents[1]), wide_half),
-            ],
-        );
-        let factor = L::load(&self.greatest) * cos_normal * emitted * L::splat(node.power);
-        factor / nearest_sq * L::splat(BOUND_MARGIN)
-    }
-
     #[inline(always)]
     fn gathered<L: Lanes>(&self, light: Wide3<L>, size: u32, bound: L) -> [Gathered; LANES] {
         let (light, bound) = (stored(light), bound.store());
@@ -409,77 +306,4 @@ impl<L: Lanes> Cut<L> {
         let shares = (L::load(bound) / total.max(L::splat(f32::MIN_POSITIVE))).and(L::mask(asked));
         shares.store().into_iter().fold(0.0, f32::max)
     }
-}
-
-/// Twin of `cluster::box_cosine`: from where a box's middle is along three axes, and how far it reaches along them.
-#[inline(always)]
-fn box_cosine<L: Lanes>(middle: Wide3<L>, reach: Wide3<L>) -> L {
-    let zero = L::splat(0.0);
-    let z = middle[0] + reach[0];
-    let x = (middle[1].abs() - reach[1]).max(zero);
-    let y = (middle[2].abs() - reach[2]).max(zero);
-    let cos = (z / (x * x + y * y + z * z).sqrt()).min(L::splat(1.0));
-    cos.and(z.greater(zero))
-}
-
-/// Twin of `cluster::widened_cosine`.
-#[inline(always)]
-fn widened_cosine<L: Lanes>(cos: L, cos_cone: f32) -> L {
-    let (zero, one) = (L::splat(0.0), L::splat(1.0));
-    let sin_cone = (1.0 - cos_cone * cos_cone).max(0.0).sqrt();
-    let sin = (one - cos * cos).max(zero).sqrt();
-    let widened = (cos * L::splat(cos_cone) + sin * L::splat(sin_cone)).max(zero).min(one);
-    L::select(L::splat(cos_cone).greater(cos), widened, one)
-}
-
-// Written out: a closure would be a function of its own, without the features of the one around it.
-
-#[inline(always)]
-fn splat3<L: Lanes>(v: Vec3) -> Wide3<L> {
-    [L::splat(v.x), L::splat(v.y), L::splat(v.z)]
-}
-
-#[inline(always)]
-fn loaded<L: Lanes>(vectors: &Vectors) -> Wide3<L> {
-    [L::load(&vectors[0]), L::load(&vectors[1]), L::load(&vectors[2])]
-}
-
-#[inline(always)]
-fn stored<L: Lanes>(v: Wide3<L>) -> Vectors {
-    [v[0].store(), v[1].store(), v[2].store()]
-}
-
-#[inline(always)]
-fn dot<L: Lanes>(a: Wide3<L>, b: Wide3<L>) -> L {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn add<L: Lanes>(a: Wide3<L>, b: Wide3<L>) -> Wide3<L> {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-#[inline(always)]
-fn sub<L: Lanes>(a: Wide3<L>, b: Wide3<L>) -> Wide3<L> {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn product<L: Lanes>(a: Wide3<L>, b: Wide3<L>) -> Wide3<L> {
-    [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
-}
-
-#[inline(always)]
-fn scaled<L: Lanes>(v: Wide3<L>, factor: L) -> Wide3<L> {
-    [v[0] * factor, v[1] * factor, v[2] * factor]
-}
-
-#[inline(always)]
-fn divided<L: Lanes>(v: Wide3<L>, divisor: L) -> Wide3<L> {
-    [v[0] / divisor, v[1] / divisor, v[2] / divisor]
-}
-
-#[inline(always)]
-fn absolute<L: Lanes>(v: Wide3<L>) -> Wide3<L> {
-    [v[0].abs(), v[1].abs(), v[2].abs()]
 }
