@@ -14,9 +14,7 @@ use super::randoms::Randoms;
 use super::scene::{Cone, Interaction, Scene};
 use crate::settings::{Physical, Strategy};
 use glam::Vec3;
-use lightcuts_kernel::bsdf::{
-    ALL_LOBES, Bsdf, CONDUCTOR, GLOSSY, LAMBERT, MATT, PHONG, PLASTIC, SPECULAR, Transport, lobes_of,
-};
+use lightcuts_kernel::bsdf::{ALL_LOBES, Bsdf, CONDUCTOR, GLOSSY, MATT, PHONG, PLASTIC, SPECULAR, Transport, lobes_of};
 use lightcuts_kernel::ray::{Hit, Ray};
 use lightcuts_world::bvh::LANES;
 use std::cell::RefCell;
@@ -136,7 +134,7 @@ impl Lightcuts<'_> {
         counts: &mut Counts,
     ) {
         for is_lambert in [true, false] {
-            let points: Vec<&Pending> = pending.iter().filter(|p| (p.at.bsdf.kind == LAMBERT) == is_lambert).collect();
+            let points: Vec<&Pending> = pending.iter().filter(|p| Bundle::is_lambert(&p.at) == is_lambert).collect();
             for points in points.chunks(LANES) {
                 let receivers: Vec<Receiver<'_>> = points.iter().map(|p| p.receiver(scene, self.clamp)).collect();
                 let gathered = self.gather_together(strategy, points, &receivers, counts);

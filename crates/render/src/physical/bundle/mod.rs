@@ -10,6 +10,7 @@ mod vectors;
 use super::cluster_tree::ClusterTree;
 use super::gather::{Gathered, Receiver, representative_of};
 use super::pass::Counts;
+use super::scene::Interaction;
 use crate::cpu::{Lanes, Plain, Simd};
 use glam::Vec3;
 use lightcuts_kernel::bsdf::LAMBERT;
@@ -81,8 +82,8 @@ impl BundleHeap {
 
 impl<'a> Bundle<'a> {
     /// Whether a point can be computed with others at once.
-    pub(crate) fn is_lambert(receiver: &Receiver<'_>) -> bool {
-        receiver.at.bsdf.kind == LAMBERT
+    pub(crate) fn is_lambert(at: &Interaction) -> bool {
+        at.bsdf.kind == LAMBERT
     }
 
     /// One to eight points.
@@ -99,7 +100,7 @@ impl<'a> Bundle<'a> {
         Self {
             receivers,
             count,
-            is_lambert: receivers.iter().all(Self::is_lambert),
+            is_lambert: receivers.iter().all(|receiver| Self::is_lambert(receiver.at)),
             point: vectors(&|receiver| receiver.at.point),
             face: vectors(&|receiver| receiver.at.face * side(receiver)),
             epsilon: each(&|receiver| receiver.at.epsilon),
