@@ -326,7 +326,7 @@ mod tests {
                         normal: emitter,
                         shading: pack_direction(emitter),
                         intensity: Vec3::ONE,
-                        padding: 0,
+                        is_bent: 1,
                     };
                     let to_light = position - receiver.point;
                     let direction = to_light.normalize();

@@ -124,6 +124,7 @@ impl Lanes for Plain {
 pub(crate) use wide::Wide;
 
 #[cfg(target_arch = "x86_64")]
+#[allow(clippy::undocumented_unsafe_blocks)] // said once below for all of them
 mod wide {
     use super::{Add, Div, LANES, Lanes, Mul, Sub};
     use std::arch::x86_64::{
@@ -146,7 +147,6 @@ mod wide {
         Div div |a, b| Self(unsafe { _mm256_div_ps(a.0, b.0) });
     }
 
-    #[allow(clippy::undocumented_unsafe_blocks)] // said above
     impl Lanes for Wide {
         #[inline(always)]
         fn splat(value: f32) -> Self {

@@ -176,7 +176,7 @@ impl<'a> Bundle<'a> {
         for light in &tree.lights {
             sum = add(sum, self.light(light, counts));
         }
-        self.gathered(sum, tree.lights.len() as u32, L::splat(0.0))
+        gathered(sum, tree.lights.len() as u32, L::splat(0.0))
     }
 
     #[inline(always)]
@@ -233,7 +233,7 @@ impl<'a> Bundle<'a> {
         }
         let size = cut.size + heap.order.len() as u32;
         counts.cut += self.count as u64 * u64::from(size);
-        self.gathered(cut.done, size, bound)
+        gathered(cut.done, size, bound)
     }
 
     /// Puts a child into the cut: a light is done, a cluster may be opened.
@@ -269,16 +269,17 @@ impl<'a> Bundle<'a> {
         let power = L::splat(light_power(light.intensity));
         divided(self.light(light, counts), power)
     }
+}
 
-    #[inline(always)]
-    fn gathered<L: Lanes>(&self, light: Wide3<L>, size: u32, bound: L) -> [Gathered; LANES] {
-        let (light, bound) = (stored(light), bound.store());
-        std::array::from_fn(|lane| Gathered {
-            light: Vec3::new(light[0][lane], light[1][lane], light[2][lane]),
-            size,
-            bound: bound[lane],
-        })
-    }
+/// What was gathered, point by point.
+#[inline(always)]
+fn gathered<L: Lanes>(light: Wide3<L>, size: u32, bound: L) -> [Gathered; LANES] {
+    let (light, bound) = (stored(light), bound.store());
+    std::array::from_fn(|lane| Gathered {
+        light: Vec3::new(light[0][lane], light[1][lane], light[2][lane]),
+        size,
+        bound: bound[lane],
+    })
 }
 
 /// A cut on its way.
@@ -297,12 +298,11 @@ impl<L: Lanes> Cut<L> {
     /// The greatest share of the light of all that a bound is, among the points in `asked`.
     #[inline(always)]
     fn relative(&self, bound: &[f32; LANES], asked: u32) -> f32 {
-        let total = match self.references {
-            Some(references) => references,
-            None => {
-                let sum = add(self.done, self.open);
-                sum[0] + sum[1] + sum[2]
-            }
+        let total = if let Some(references) = self.references {
+            references
+        } else {
+            let sum = add(self.done, self.open);
+            sum[0] + sum[1] + sum[2]
         };
         let shares = (L::load(bound) / total.max(L::splat(f32::MIN_POSITIVE))).and(L::mask(asked));
         shares.store().into_iter().fold(0.0, f32::max)
