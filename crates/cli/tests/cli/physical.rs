@@ -60,9 +60,10 @@ fn every_integrator_renders_a_scene_in_toml() {
             assert!(names.contains(&name), "{names:?}");
         }
         assert!(layers.beauty().pixels().iter().any(|p| p[0] > 0.1), "something is seen");
-        // The picture holds its job.
+        // The picture holds its job. What `auto` chooses depends on measured times.
         folder.run("render a.exr -o again.exr --progress none").success();
-        assert!(read_exr(folder.at("again.exr")).unwrap().beauty() == layers.beauty());
+        let again = read_exr(folder.at("again.exr")).unwrap();
+        assert!(again.beauty() == layers.beauty() || integrator == "auto", "{integrator}");
     }
 }
 
