@@ -3,6 +3,7 @@
 //! The CPU device replaces [`closest_hit`] and [`any_hit`] by SIMD versions that are tested against these. Other devices
 //! traverse the compressed hierarchy of [`crate::CompressedHierarchy`].
 
+use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{
@@ -24,7 +25,7 @@ pub const MAX_LEVELS: usize = STACK_SIZE / (LANES - 1);
 /// Blocks and nodes begin where cache lines do: a ray waits for memory longer than it computes, and a block across one line
 /// more is one more to wait for.
 #[repr(C, align(64))]
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct TriangleBlock {
     /// First corners: x of all lanes, y of all lanes, z of all lanes.
     pub corner: [[f32; LANES]; 3],
@@ -55,7 +56,7 @@ impl TriangleBlock {
 
 /// Eight children's boxes, component by component, rounded outwards. Empty children have inverted boxes.
 #[repr(C, align(64))]
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct BvhNode {
     /// Lower corners, then upper ones: of each x of all children, y of all children, z of all children.
     pub bounds: [[[f32; LANES]; 3]; 2],
@@ -65,6 +66,8 @@ pub struct BvhNode {
     pub triangles: u32,
     /// Which children are spheres or squares, a bit per lane.
     pub others: u32,
+    /// The rest of the last cache line.
+    pub padding: [u32; 6],
 }
 
 impl BvhNode {
@@ -74,6 +77,7 @@ impl BvhNode {
         child: [u32::MAX; LANES],
         triangles: 0,
         others: 0,
+        padding: [0; 6],
     };
 
     /// Lower and upper corner of a child's box.

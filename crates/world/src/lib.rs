@@ -8,6 +8,7 @@ mod collapse;
 mod compressed;
 mod lights;
 mod mesh;
+mod pages;
 pub mod physical;
 mod shapes;
 mod thesis;
@@ -15,6 +16,7 @@ mod validate;
 mod widen;
 
 pub use compressed::CompressedHierarchy;
+pub use pages::Pages;
 pub use physical::PhysicalWorld;
 pub use shapes::Shapes;
 pub use validate::Defect;

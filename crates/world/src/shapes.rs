@@ -4,6 +4,7 @@ use crate::bvh::{BvhNode, Geometry, TriangleBlock};
 use crate::collapse;
 use crate::lights::Square as SquareFrame;
 use crate::mesh::{Place, place_triangle};
+use crate::pages::Pages;
 use glam::Vec3;
 use lightcuts_kernel::intersect::{SPHERE, SQUARE, Sphere, Square, TRIANGLE};
 use lightcuts_kernel::surface::{Primitive, Surfaces, TriangleCorners};
@@ -13,17 +14,17 @@ use lightcuts_scene::{MaterialId, MeshDesc};
 #[derive(Debug, Clone, Default)]
 pub struct Shapes {
     /// Nodes of the hierarchy; the first is the root.
-    pub nodes: Vec<BvhNode>,
+    pub nodes: Pages<BvhNode>,
     /// Triangles for intersection, in blocks, in hierarchy order.
-    pub triangles: Vec<TriangleBlock>,
+    pub triangles: Pages<TriangleBlock>,
     /// Spheres in file order.
     pub spheres: Vec<Sphere>,
     /// Squares in file order; a cube is six of them.
     pub squares: Vec<Square>,
     /// All primitives in file order.
-    pub primitives: Vec<Primitive>,
+    pub primitives: Pages<Primitive>,
     /// What triangles carry at their corners, in file order.
-    pub corners: Vec<TriangleCorners>,
+    pub corners: Pages<TriangleCorners>,
 }
 
 impl Shapes {
@@ -110,7 +111,13 @@ impl Builder {
     /// Builds the hierarchy. `reach` is the camera's largest coordinate.
     pub(crate) fn finish(self, reach: f32) -> Shapes {
         let (nodes, triangles) = collapse::build(&self, reach);
-        let Self { spheres, squares, primitives, corners, .. } = self;
-        Shapes { nodes, triangles, spheres, squares, primitives, corners }
+        Shapes {
+            nodes: nodes.into(),
+            triangles: triangles.into(),
+            spheres: self.spheres,
+            squares: self.squares,
+            primitives: self.primitives.into(),
+            corners: self.corners.into(),
+        }
     }
 }

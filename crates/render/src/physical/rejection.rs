@@ -41,7 +41,8 @@ pub(crate) struct Rejection {
 pub(crate) struct Judged {
     /// The light, if it is kept.
     pub(crate) light: Option<VirtualLight>,
-    /// What it brings to a place, as a sum of channels.
+    /// What it brings to a place, as a sum of channels, if its light path were the only one: paths share the power of the lights,
+    /// and passes differ in the number of paths.
     worth: f32,
 }
 
@@ -59,9 +60,9 @@ impl Rejection {
         Self { places, clamp_sq: clamp * clamp, sum: 0.0, count: 0 }
     }
 
-    /// Keeps a candidate or does not.
-    pub(crate) fn judge(&self, scene: &Scene<'_>, light: VirtualLight, random: [f32; 2]) -> Judged {
-        let worth = self.worth(scene, &light, random[1]);
+    /// Keeps a candidate, of one of so many light paths, or does not.
+    pub(crate) fn judge(&self, scene: &Scene<'_>, light: VirtualLight, paths: u32, random: [f32; 2]) -> Judged {
+        let worth = self.worth(scene, &light, random[1]) * paths as f32;
         if self.sum <= 0.0 {
             return Judged { light: Some(light), worth };
         }

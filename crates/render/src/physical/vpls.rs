@@ -26,7 +26,7 @@ pub(crate) fn trace_vpls(
         |arrival| {
             let light = virtual_light(arrival, tables)?;
             Some(match rejection {
-                Some(rejection) => rejection.judge(scene, light, arrival.random),
+                Some(rejection) => rejection.judge(scene, light, paths, arrival.random),
                 None => Judged::kept(light),
             })
         },

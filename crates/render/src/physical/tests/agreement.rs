@@ -93,3 +93,15 @@ fn the_same_picture_bit_for_bit() {
     let expected = on(1, Simd::Off);
     assert_eq!(on(3, Simd::Auto).pixels(), expected.pixels());
 }
+
+/// What a pass costs goes by the number of its virtual lights, so it is the one that was asked for, whatever the pilot had.
+#[test]
+fn a_pass_has_about_as_many_virtual_lights_as_are_wanted() {
+    for wanted in [200, 2_000, 40_000] {
+        let mut settings = settings(Integrator::Lightcuts, 8, 1);
+        settings.physical.vpls = wanted;
+        let found = render(&room(true), &settings).stats.vpl_count;
+        println!("{wanted} wanted, {found} found");
+        assert!((f64::from(wanted) * 0.8..f64::from(wanted) * 1.25).contains(&(found as f64)), "{wanted}: {found}");
+    }
+}
