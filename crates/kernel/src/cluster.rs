@@ -52,10 +52,10 @@ pub struct BoundReceiver {
     pub normal: Vec3,
     /// The viewer's direction, mirrored about the normal.
     pub mirror: Vec3,
-    /// Cosine between the normal and the viewer.
-    pub cos_o: f32,
     /// Squared distance below which light no longer grows.
     pub clamp_sq: f32,
+    /// The material, as the viewer sees it.
+    pub bsdf: BsdfBound,
 }
 
 /// The least squared distance from the origin to a box.
@@ -93,48 +93,68 @@ pub fn widened_cosine(cos: f32, cos_cone: f32) -> f32 {
     (cos * cos_cone + sin(cos) * sin(cos_cone)).clamp(0.0, 1.0)
 }
 
-/// An upper bound of a BSDF's greatest channel times the cosine, over directions of which the cosines to the normal and to the
-/// mirror direction are at most the given ones. `weights` are factors on its matt and on its glossy lobes.
-pub fn bsdf_bound(bsdf: &Bsdf, tables: &[f32], weights: [f32; 2], cos_o: f32, cos_normal: f32, cos_mirror: f32) -> f32 {
+/// What bounds the greatest channel of a BSDF times the cosine, seen from one direction: the terms that are the same for all clusters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BsdfBound {
+    /// Factor on the cosine to the normal.
+    pub even: f32,
+    /// Factor on the distribution of facets; 0 without.
+    pub facets: f32,
+    /// Roughness of the facets; 1 without.
+    pub alpha: f32,
+    /// Factor on a Phong lobe times the cosine to the normal; 0 without.
+    pub lobe: f32,
+    /// The lobe's exponent.
+    pub exponent: f32,
+}
+
+/// The bound of a BSDF seen under a cosine. `weights` are factors on its matt and on its glossy lobes.
+pub fn bsdf_bound(bsdf: &Bsdf, tables: &[f32], weights: [f32; 2], cos_o: f32) -> BsdfBound {
     let lobes = lobes_of(bsdf);
-    let mut bound = 0.0;
+    let lost = || 1.0 - energy_at(tables, bsdf.table, false, cos_o);
+    let mean_lost = || (1.0 - mean_energy(tables, bsdf.table, false)).max(1e-4);
+    let mut bound = BsdfBound { even: 0.0, facets: 0.0, alpha: 1.0, lobe: 0.0, exponent: 1.0 };
     if lobes & MATT != 0 && weights[0] > 0.0 {
-        let coat = if bsdf.kind == PLASTIC {
-            (1.0 - energy_at(tables, bsdf.table, false, cos_o))
-                / (1.0 - mean_energy(tables, bsdf.table, false)).max(1e-4)
-        } else {
-            1.0
-        };
-        bound += weights[0] * bsdf.diffuse.max_element() * coat * cos_normal * (1.0 / PI);
+        let coat = if bsdf.kind == PLASTIC { lost() / mean_lost() } else { 1.0 };
+        bound.even = weights[0] * bsdf.diffuse.max_element() * coat * (1.0 / PI);
     }
-    if lobes & GLOSSY != 0 && weights[1] > 0.0 {
-        bound += weights[1] * glossy_bound(bsdf, tables, cos_o, cos_normal, cos_mirror);
+    if lobes & GLOSSY == 0 || weights[1] <= 0.0 {
+        return bound;
+    }
+    if bsdf.kind == PHONG {
+        bound.lobe = weights[1] * bsdf.specular.max_element() * (bsdf.exponent + 2.0) / (2.0 * PI);
+        bound.exponent = bsdf.exponent;
+    }
+    if bsdf.kind == CONDUCTOR || bsdf.kind == PLASTIC {
+        // F and G are at most 1.
+        bound.facets = weights[1] / (4.0 * cos_o.max(1e-6));
+        bound.alpha = bsdf.alpha;
+    }
+    if bsdf.kind == CONDUCTOR {
+        bound.even += weights[1] * lost().max(0.0) / (PI * mean_lost());
     }
     bound
 }
 
-fn glossy_bound(bsdf: &Bsdf, tables: &[f32], cos_o: f32, cos_normal: f32, cos_mirror: f32) -> f32 {
-    match bsdf.kind {
-        PHONG => {
-            let lobe = (bsdf.exponent + 2.0) / (2.0 * PI) * power(cos_mirror, bsdf.exponent);
-            bsdf.specular.max_element() * lobe * cos_normal
-        }
-        CONDUCTOR | PLASTIC => {
-            // Two half turns, about the normal and about the half vector, turn the mirror direction into the light's by twice
-            // the angle between both at most; the distribution falls with that angle. F and G are at most 1.
-            let cos_half = (0.5 + 0.5 * cos_mirror).sqrt();
-            let facets = ggx_distribution(cos_half, bsdf.alpha) / (4.0 * cos_o.max(1e-6));
-            let lost = if bsdf.kind == CONDUCTOR {
-                let mean = mean_energy(tables, bsdf.table, false);
-                let lost = 1.0 - energy_at(tables, bsdf.table, false, cos_o);
-                lost.max(0.0) / (PI * (1.0 - mean).max(1e-4)) * cos_normal
-            } else {
-                0.0
-            };
-            facets + lost
-        }
-        _ => 0.0,
+/// Whether a bound goes by the mirror direction, too.
+pub fn is_shiny(bound: &BsdfBound) -> bool {
+    bound.facets > 0.0 || bound.lobe > 0.0
+}
+
+/// An upper bound of the greatest channel times the cosine, over directions of which the cosines to the normal and to the mirror
+/// direction are at most the given ones.
+pub fn greatest_bsdf(bound: &BsdfBound, cos_normal: f32, cos_mirror: f32) -> f32 {
+    let mut greatest = bound.even * cos_normal;
+    if bound.facets > 0.0 {
+        // Two half turns, about the normal and about the half vector, turn the mirror direction into the light's by twice
+        // the angle between both at most; the distribution falls with that angle.
+        let cos_half = (0.5 + 0.5 * cos_mirror).sqrt();
+        greatest += bound.facets * ggx_distribution(cos_half, bound.alpha);
     }
+    if bound.lobe > 0.0 {
+        greatest += bound.lobe * power(cos_mirror, bound.exponent) * cos_normal;
+    }
+    greatest
 }
 
 /// How much a cluster may matter: an upper bound of its light but for the distance, and between which squared distances its lights
@@ -149,14 +169,8 @@ pub struct ClusterReach {
     pub farthest_sq: f32,
 }
 
-/// What a cluster may send; see [`bsdf_bound`] for the weights.
-pub fn cluster_reach(
-    node: &ClusterNode,
-    receiver: &BoundReceiver,
-    bsdf: &Bsdf,
-    tables: &[f32],
-    weights: [f32; 2],
-) -> ClusterReach {
+/// What a cluster may send.
+pub fn cluster_reach(node: &ClusterNode, receiver: &BoundReceiver) -> ClusterReach {
     let half = (node.upper - node.lower) * 0.5;
     let center = (node.upper + node.lower) * 0.5 - receiver.point;
     let nearest_sq = box_distance_sq(center, half).max(receiver.clamp_sq);
@@ -170,9 +184,8 @@ pub fn cluster_reach(
     if cos_normal <= 0.0 {
         return nothing;
     }
-    let cos_mirror = if weights[1] > 0.0 { box_cosine(receiver.mirror, center, half) } else { 0.0 };
-    let material = bsdf_bound(bsdf, tables, weights, receiver.cos_o, cos_normal, cos_mirror);
-    ClusterReach { factor: node.power * material * emitted, ..nothing }
+    let cos_mirror = if is_shiny(&receiver.bsdf) { box_cosine(receiver.mirror, center, half) } else { 0.0 };
+    ClusterReach { factor: node.power * greatest_bsdf(&receiver.bsdf, cos_normal, cos_mirror) * emitted, ..nothing }
 }
 
 /// At most so much light, as a sum of channels, comes from a cluster.
@@ -307,10 +320,10 @@ mod tests {
                     point: (random3(k, 7) - 0.5) * 3.0,
                     normal,
                     mirror: normal * (2.0 * cos_o) - viewer,
-                    cos_o,
                     clamp_sq: 0.01,
+                    bsdf: bsdf_bound(&bsdf, &tables, [1.0; 2], cos_o),
                 };
-                let bound = reach_bound(&cluster_reach(&node, &receiver, &bsdf, &tables, [1.0; 2]));
+                let bound = reach_bound(&cluster_reach(&node, &receiver));
                 let tangents = frame(normal);
                 let local = |v: Vec3| Vec3::new(tangents.0.dot(v), tangents.1.dot(v), normal.dot(v));
                 for m in 0..8 {

@@ -7,7 +7,7 @@ use super::scene::{Interaction, Scene};
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{GLOSSY, MATT, Transport};
 use lightcuts_kernel::cluster::{
-    BoundReceiver, ClusterReach, LIGHT_CHILD, cluster_reach, first_probability, light_power, reach_bound,
+    BoundReceiver, ClusterReach, LIGHT_CHILD, bsdf_bound, cluster_reach, first_probability, light_power, reach_bound,
 };
 use lightcuts_kernel::ray::RELATIVE_EPSILON;
 use lightcuts_kernel::virtual_light::{VirtualLight, virtual_emission};
@@ -21,8 +21,6 @@ pub(crate) struct Receiver<'a> {
     pub(super) matt: Vec3,
     glossy: Vec3,
     pub(super) bound: BoundReceiver,
-    /// Their greatest channels.
-    pub(super) weights: [f32; 2],
 }
 
 /// What was gathered.
@@ -49,8 +47,10 @@ impl<'a> Receiver<'a> {
         let normal = if at.wo.z < 0.0 { -at.normal } else { at.normal };
         let cos_o = at.wo.z.abs();
         let toward = at.toward();
-        let bound = BoundReceiver { point: at.point, normal, mirror: normal * (2.0 * cos_o) - toward, cos_o, clamp_sq };
-        Self { scene, at, matt, glossy, bound, weights: [matt.max_element(), glossy.max_element()] }
+        let weights = [matt.max_element(), glossy.max_element()];
+        let bsdf = bsdf_bound(&at.bsdf, &scene.world.tables, weights, cos_o);
+        let bound = BoundReceiver { point: at.point, normal, mirror: normal * (2.0 * cos_o) - toward, clamp_sq, bsdf };
+        Self { scene, at, matt, glossy, bound }
     }
 
     /// What a light sends if nothing is between.
@@ -91,8 +91,7 @@ impl<'a> Receiver<'a> {
 
     pub(super) fn reach(&self, tree: &ClusterTree, node: u32, counts: &mut Counts) -> ClusterReach {
         counts.bounds += 1;
-        let tables = &self.scene.world.tables[..];
-        cluster_reach(&tree.nodes[node as usize], &self.bound, &self.at.bsdf, tables, self.weights)
+        cluster_reach(&tree.nodes[node as usize], &self.bound)
     }
 
     /// The sum over all lights.

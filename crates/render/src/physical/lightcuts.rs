@@ -4,7 +4,7 @@
 //! two factors: one on what the next vertex sends by its matt lobes, one on the rest. Where a vertex gathers virtual lights
 //! the first one is left with what the clamp of their distance takes away (Kollig & Keller 2004).
 
-use super::bundle::{Bundle, BundleHeap, Fineness};
+use super::bundle::{Bundle, Clusters, Cutting, Fineness};
 use super::cluster_tree::ClusterTree;
 use super::direct::{Before, DirectLight};
 use super::gather::{CutHeap, Gathered, Receiver};
@@ -68,7 +68,7 @@ impl Pending {
 #[derive(Default)]
 struct Heaps {
     single: CutHeap,
-    bundle: BundleHeap,
+    bundle: Clusters,
 }
 
 thread_local! {
@@ -157,21 +157,19 @@ impl Lightcuts<'_> {
         counts: &mut Counts,
     ) -> [Gathered; LANES] {
         let Self { tree, settings, references, .. } = self;
-        let simd = receivers[0].scene.simd;
         let fineness = Fineness { error: settings.cut_error, max_cut: settings.max_cut };
         let reference = |point: &Pending| references.get(point.pixel as usize).copied();
         match (receivers, strategy) {
             ([receiver], Strategy::All) => [receiver.all(tree, counts); LANES],
-            (_, Strategy::All) => Bundle::new(receivers).all(tree, simd, counts),
+            (_, Strategy::All) => Bundle::new(receivers).all(tree, counts),
             ([receiver], _) => HEAPS.with_borrow_mut(|heaps| {
                 [receiver.cut(tree, fineness, reference(points[0]), &mut heaps.single, counts); LANES]
             }),
             _ => {
                 let known = |lane: usize| reference(points[lane.min(points.len() - 1)]).unwrap_or_default();
-                let known: [f32; LANES] = std::array::from_fn(known);
-                let known = (!references.is_empty()).then_some(&known);
-                let bundle = Bundle::new(receivers);
-                HEAPS.with_borrow_mut(|heaps| bundle.cut(tree, fineness, known, &mut heaps.bundle, simd, counts))
+                let references = (!references.is_empty()).then(|| std::array::from_fn(known));
+                let (bundle, cutting) = (Bundle::new(receivers), Cutting { tree, fineness, references });
+                HEAPS.with_borrow_mut(|heaps| bundle.cut(&cutting, &mut heaps.bundle, counts))
             }
         }
     }

@@ -1,33 +1,20 @@
 //! What a cluster may send to eight points at most.
 
 use super::Bundle;
-use super::vectors::{Wide3, absolute, dot, loaded, splat3, sub};
+use super::vectors::{Frames, Wide3, absolute, dot, loaded, splat3, sub};
 use crate::cpu::Lanes;
-use crate::physical::cluster_tree::ClusterTree;
-use crate::physical::pass::Counts;
 use glam::Vec3;
-use lightcuts_kernel::cluster::{BOUND_MARGIN, ClusterNode, reach_bound};
+use lightcuts_kernel::cluster::{BOUND_MARGIN, ClusterNode};
+use lightcuts_kernel::power::power;
 use lightcuts_kernel::sampling::frame;
 use lightcuts_world::bvh::LANES;
+use std::f32::consts::PI;
 
 impl Bundle<'_> {
-    /// At most so much light, as a sum of channels, comes from a cluster to each point.
+    /// At most so much light, as a sum of channels, comes from a cluster to each point; twin of `cluster_reach` and
+    /// `reach_bound`.
     #[inline(always)]
-    pub(super) fn bound<L: Lanes>(&self, tree: &ClusterTree, node: u32, counts: &mut Counts) -> L {
-        if self.is_lambert {
-            counts.bounds += self.count as u64;
-            return self.lambert_bound(&tree.nodes[node as usize]);
-        }
-        let mut bounds = [0.0; LANES];
-        for (bound, receiver) in bounds.iter_mut().zip(&self.receivers[..self.count]) {
-            *bound = reach_bound(&receiver.reach(tree, node, counts));
-        }
-        L::load(&bounds)
-    }
-
-    /// The same for points of Lambert's material; twin of `cluster_reach` and `reach_bound`.
-    #[inline(always)]
-    fn lambert_bound<L: Lanes>(&self, node: &ClusterNode) -> L {
+    pub(super) fn bound<L: Lanes>(&self, node: &ClusterNode) -> L {
         let zero = L::splat(0.0);
         let half = (node.upper - node.lower) * 0.5;
         let center: Wide3<L> = sub(splat3((node.upper + node.lower) * 0.5), loaded(&self.point));
@@ -45,18 +32,49 @@ impl Bundle<'_> {
             splat3(Vec3::new(node.axis.abs().dot(half), tangent.abs().dot(half), bitangent.abs().dot(half))),
         );
         let emitted = widened_cosine(emitted, node.cos_cone);
-        let (normal, tangents) = (loaded(&self.normal), [loaded(&self.tangents[0]), loaded(&self.tangents[1])]);
-        let cos_normal = box_cosine(
-            [dot(normal, center), dot(tangents[0], center), dot(tangents[1], center)],
-            [
-                dot(absolute(normal), wide_half),
-                dot(absolute(tangents[0]), wide_half),
-                dot(absolute(tangents[1]), wide_half),
-            ],
-        );
-        let factor = L::load(&self.greatest) * cos_normal * emitted * L::splat(node.power);
+        let factor = self.greatest_bsdf(center, wide_half) * emitted * L::splat(node.power);
         factor / nearest_sq * L::splat(BOUND_MARGIN)
     }
+
+    /// The greatest channel of the points' BSDFs times the cosine, for light from a box; twin of `cluster::greatest_bsdf`.
+    #[inline(always)]
+    fn greatest_bsdf<L: Lanes>(&self, center: Wide3<L>, half: Wide3<L>) -> L {
+        let cos_normal = axis_cosine(&self.normals, center, half);
+        let even = L::load(&self.even) * cos_normal;
+        if !self.is_shiny {
+            return even;
+        }
+        let (one, a_half) = (L::splat(1.0), L::splat(0.5));
+        let cos_mirror = axis_cosine(&self.mirrors, center, half);
+        let cos_half = (a_half + a_half * cos_mirror).sqrt();
+        let alpha = L::load(&self.alpha);
+        let width = (one - cos_half) * (one + cos_half) + alpha * alpha * cos_half * cos_half;
+        let facets = L::load(&self.facets) * (alpha * alpha / (L::splat(PI) * width * width));
+        let lobes = L::load(&self.lobes(cos_mirror.store())) * cos_normal;
+        (even + facets + lobes).and(cos_normal.greater(L::splat(0.0)))
+    }
+
+    /// Phong's lobes where they are cut by these cosines.
+    fn lobes(&self, cos_mirror: [f32; LANES]) -> [f32; LANES] {
+        let mut lobes = [0.0; LANES];
+        for (lane, receiver) in self.receivers[..self.count].iter().enumerate() {
+            let bound = &receiver.bound.bsdf;
+            if bound.lobe > 0.0 {
+                lobes[lane] = bound.lobe * power(cos_mirror[lane], bound.exponent);
+            }
+        }
+        lobes
+    }
+}
+
+/// The greatest cosines between each point's axis, the first of its frame, and its box.
+#[inline(always)]
+fn axis_cosine<L: Lanes>(frames: &Frames, center: Wide3<L>, half: Wide3<L>) -> L {
+    let [axis, tangent, bitangent]: [Wide3<L>; 3] = [loaded(&frames[0]), loaded(&frames[1]), loaded(&frames[2])];
+    box_cosine(
+        [dot(axis, center), dot(tangent, center), dot(bitangent, center)],
+        [dot(absolute(axis), half), dot(absolute(tangent), half), dot(absolute(bitangent), half)],
+    )
 }
 
 /// Twin of `cluster::box_cosine`: from where a box's middle is along three axes, and how far it reaches along them.

@@ -33,7 +33,7 @@ impl Bundle<'_> {
         let distance = distance_sq.sqrt();
         let direction = divided(to_light, distance);
         let cos_light = zero - dot(splat3(light.normal), direction);
-        let cos = dot(loaded(&self.normal), direction);
+        let cos = dot(loaded(&self.normals[0]), direction);
         let cos_face = dot(loaded(&self.face), direction);
         let mut facing = cos_light.min(cos).min(cos_face);
         if light.is_bent != 0 {

@@ -4,25 +4,24 @@
 //! bounded for all of them at once, and opened where the bound is too much for any.
 
 mod bound;
+mod cut;
 mod light;
 mod vectors;
 
+pub(crate) use cut::{Clusters, Cutting, Fineness};
+
 use super::cluster_tree::ClusterTree;
-use super::gather::{Gathered, Receiver, representative_of};
+use super::gather::{Gathered, Receiver};
 use super::pass::Counts;
 use super::scene::Interaction;
-use crate::cpu::{Lanes, Plain, Simd};
+use crate::cpu::{Lanes, Plain};
 use glam::Vec3;
 use lightcuts_kernel::bsdf::LAMBERT;
-use lightcuts_kernel::cluster::{LIGHT_CHILD, light_power};
+use lightcuts_kernel::cluster::is_shiny;
 use lightcuts_kernel::sampling::frame;
 use lightcuts_world::bvh::LANES;
-use std::collections::BinaryHeap;
 use std::f32::consts::PI;
-use vectors::{Wide3, add, divided, loaded, scaled, stored, sub};
-
-/// A vector for each point, by axes.
-type Vectors = [[f32; LANES]; 3];
+use vectors::{Frames, Vectors, Wide3, add, stored};
 
 /// Points that are lit together.
 pub(crate) struct Bundle<'a> {
@@ -30,54 +29,22 @@ pub(crate) struct Bundle<'a> {
     receivers: [Receiver<'a>; LANES],
     /// How many there are.
     count: usize,
-    /// Whether all of them are of Lambert's material: what is computed for all at once.
+    /// Whether all of them are of Lambert's material: what a light sends is computed for all at once.
     is_lambert: bool,
     point: Vectors,
     face: Vectors,
     epsilon: [f32; LANES],
-    normal: Vectors,
-    tangents: [Vectors; 2],
+    /// Normals and what is across them.
+    normals: Frames,
     /// BSDF and factor on it, of Lambert's material.
     color: Vectors,
-    /// The greatest channel of that.
-    greatest: [f32; LANES],
-}
-
-/// What a cut is to be.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Fineness {
-    /// Bound of a cluster's error, relative to the light of all.
-    pub(crate) error: f32,
-    pub(crate) max_cut: u32,
-}
-
-/// A cluster in a cut.
-#[derive(Debug, Clone, Copy)]
-struct Entry {
-    node: u32,
-    bound: [f32; LANES],
-    /// Light that its representative would send with all of the cluster's power of 1.
-    unit: Vectors,
-}
-
-/// Clusters of a cut; kept to save its memory.
-#[derive(Debug, Default)]
-pub(crate) struct BundleHeap {
-    entries: Vec<Entry>,
-    /// Relative bounds, as bits, which order numbers of at least 0 as they do; with places of entries.
-    order: BinaryHeap<(u32, u32)>,
-}
-
-impl BundleHeap {
-    /// Orders the clusters anew.
-    #[inline(always)]
-    fn reorder(&mut self, relative: impl Fn(&[f32; LANES]) -> f32) {
-        let mut order = std::mem::take(&mut self.order).into_vec();
-        for (key, place) in &mut order {
-            *key = relative(&self.entries[*place as usize].bound).to_bits();
-        }
-        self.order = order.into();
-    }
+    /// Factors of `BsdfBound`.
+    even: [f32; LANES],
+    /// Whether any point has facets or lobes, and so the mirror's directions count.
+    is_shiny: bool,
+    mirrors: Frames,
+    facets: [f32; LANES],
+    alpha: [f32; LANES],
 }
 
 impl<'a> Bundle<'a> {
@@ -94,9 +61,15 @@ impl<'a> Bundle<'a> {
         let vectors = |of: &dyn Fn(&Receiver<'_>) -> Vec3| -> Vectors {
             std::array::from_fn(|axis| each(&|receiver| of(receiver)[axis]))
         };
+        let frames = |of: &dyn Fn(&Receiver<'_>) -> Vec3| -> Frames {
+            let across = receivers.each_ref().map(|receiver| frame(of(receiver)));
+            let tangent = |axis: usize| across.map(|(tangent, _)| tangent[axis]);
+            let bitangent = |axis: usize| across.map(|(_, bitangent)| bitangent[axis]);
+            [vectors(of), std::array::from_fn(tangent), std::array::from_fn(bitangent)]
+        };
         // Towards the viewer.
         let side = |receiver: &Receiver<'_>| 1.0_f32.copysign(receiver.at.wo.z);
-        let color = |receiver: &Receiver<'_>| receiver.at.bsdf.diffuse * (1.0 / PI) * receiver.matt;
+        let any_shiny = receivers.iter().any(|receiver| is_shiny(&receiver.bound.bsdf));
         Self {
             receivers,
             count,
@@ -104,13 +77,13 @@ impl<'a> Bundle<'a> {
             point: vectors(&|receiver| receiver.at.point),
             face: vectors(&|receiver| receiver.at.face * side(receiver)),
             epsilon: each(&|receiver| receiver.at.epsilon),
-            normal: vectors(&|receiver| receiver.bound.normal),
-            tangents: [
-                vectors(&|receiver| frame(receiver.bound.normal).0),
-                vectors(&|receiver| frame(receiver.bound.normal).1),
-            ],
-            color: vectors(&color),
-            greatest: each(&|receiver| receiver.weights[0] * receiver.at.bsdf.diffuse.max_element() * (1.0 / PI)),
+            normals: frames(&|receiver| receiver.bound.normal),
+            color: vectors(&|receiver| receiver.at.bsdf.diffuse * (1.0 / PI) * receiver.matt),
+            even: each(&|receiver| receiver.bound.bsdf.even),
+            is_shiny: any_shiny,
+            mirrors: if any_shiny { frames(&|receiver| receiver.bound.mirror) } else { Frames::default() },
+            facets: each(&|receiver| receiver.bound.bsdf.facets),
+            alpha: each(&|receiver| receiver.bound.bsdf.alpha),
         }
     }
 
@@ -119,9 +92,9 @@ impl<'a> Bundle<'a> {
     }
 
     /// The sum over all lights, at each point.
-    pub(crate) fn all(&self, tree: &ClusterTree, simd: Simd, counts: &mut Counts) -> [Gathered; LANES] {
+    pub(crate) fn all(&self, tree: &ClusterTree, counts: &mut Counts) -> [Gathered; LANES] {
         #[cfg(target_arch = "x86_64")]
-        if simd.has_avx2() {
+        if self.receivers[0].scene.simd.has_avx2() {
             // SAFETY: the machine has the features.
             #[allow(unsafe_code)]
             return unsafe { self.all_avx2(tree, counts) };
@@ -137,35 +110,20 @@ impl<'a> Bundle<'a> {
 
     /// The sum over a cut, at each point (Walter et al. 2005): as [`Receiver::cut`], but that a cluster is opened where its bound
     /// is too much for any of the points.
-    pub(crate) fn cut(
-        &self,
-        tree: &ClusterTree,
-        fineness: Fineness,
-        references: Option<&[f32; LANES]>,
-        heap: &mut BundleHeap,
-        simd: Simd,
-        counts: &mut Counts,
-    ) -> [Gathered; LANES] {
+    pub(crate) fn cut(&self, cutting: &Cutting<'_>, clusters: &mut Clusters, counts: &mut Counts) -> [Gathered; LANES] {
         #[cfg(target_arch = "x86_64")]
-        if simd.has_avx2() {
+        if self.receivers[0].scene.simd.has_avx2() {
             // SAFETY: the machine has the features.
             #[allow(unsafe_code)]
-            return unsafe { self.cut_avx2(tree, fineness, references, heap, counts) };
+            return unsafe { self.cut_avx2(cutting, clusters, counts) };
         }
-        self.sum_of_cut::<Plain>(tree, fineness, references, heap, counts)
+        self.sum_of_cut::<Plain>(cutting, clusters, counts)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma,bmi1")]
-    fn cut_avx2(
-        &self,
-        tree: &ClusterTree,
-        fineness: Fineness,
-        references: Option<&[f32; LANES]>,
-        heap: &mut BundleHeap,
-        counts: &mut Counts,
-    ) -> [Gathered; LANES] {
-        self.sum_of_cut::<crate::cpu::Wide>(tree, fineness, references, heap, counts)
+    fn cut_avx2(&self, cutting: &Cutting<'_>, clusters: &mut Clusters, counts: &mut Counts) -> [Gathered; LANES] {
+        self.sum_of_cut::<crate::cpu::Wide>(cutting, clusters, counts)
     }
 
     #[inline(always)]
@@ -178,97 +136,6 @@ impl<'a> Bundle<'a> {
         }
         gathered(sum, tree.lights.len() as u32, L::splat(0.0))
     }
-
-    #[inline(always)]
-    fn sum_of_cut<L: Lanes>(
-        &self,
-        tree: &ClusterTree,
-        fineness: Fineness,
-        references: Option<&[f32; LANES]>,
-        heap: &mut BundleHeap,
-        counts: &mut Counts,
-    ) -> [Gathered; LANES] {
-        let Some(root) = tree.root() else { return [Gathered::default(); LANES] };
-        counts.gathered += self.count as u64;
-        heap.entries.clear();
-        heap.order.clear();
-        let zero = L::splat(0.0);
-        let mut cut = Cut { done: [zero; 3], open: [zero; 3], size: 0, references: references.map(|r| L::load(r)) };
-        let unit = self.representative(tree, root, counts);
-        self.place(tree, root, unit, heap, &mut cut, counts);
-        // Whether the order is by the light of all as it is now: where it is what was gathered so far, it changes.
-        let mut is_fresh = true;
-        while let Some(&(_, worst)) = heap.order.peek() {
-            if cut.size + heap.order.len() as u32 >= fineness.max_cut {
-                break;
-            }
-            let entry = heap.entries[worst as usize];
-            if cut.relative(&entry.bound, self.asked()) <= fineness.error {
-                if is_fresh || references.is_some() {
-                    break;
-                }
-                heap.reorder(|bound| cut.relative(bound, self.asked()));
-                is_fresh = true;
-                continue;
-            }
-            is_fresh = false;
-            heap.order.pop();
-            let node = tree.nodes[entry.node as usize];
-            let unit: Wide3<L> = loaded(&entry.unit);
-            let power = L::splat(node.power);
-            cut.open = sub(cut.open, scaled(unit, power));
-            // One child shares its representative with the parent, and so the shadow rays.
-            for child in [node.left, node.right] {
-                let is_shared = representative_of(tree, child) == node.representative;
-                let unit = if is_shared { unit } else { self.representative(tree, child, counts) };
-                self.place(tree, child, unit, heap, &mut cut, counts);
-            }
-        }
-        let mut bound = zero;
-        for &(_, place) in &heap.order {
-            let entry = &heap.entries[place as usize];
-            let power = L::splat(tree.nodes[entry.node as usize].power);
-            cut.done = add(cut.done, scaled(loaded(&entry.unit), power));
-            bound = bound + L::load(&entry.bound);
-        }
-        let size = cut.size + heap.order.len() as u32;
-        counts.cut += self.count as u64 * u64::from(size);
-        gathered(cut.done, size, bound)
-    }
-
-    /// Puts a child into the cut: a light is done, a cluster may be opened.
-    #[inline(always)]
-    fn place<L: Lanes>(
-        &self,
-        tree: &ClusterTree,
-        child: u32,
-        unit: Wide3<L>,
-        heap: &mut BundleHeap,
-        cut: &mut Cut<L>,
-        counts: &mut Counts,
-    ) {
-        if child & LIGHT_CHILD != 0 {
-            let power = L::splat(light_power(tree.lights[(child & !LIGHT_CHILD) as usize].intensity));
-            cut.done = add(cut.done, scaled(unit, power));
-            cut.size += 1;
-            return;
-        }
-        let node = &tree.nodes[child as usize];
-        let bound = self.bound::<L>(tree, child, counts).store();
-        let power = L::splat(node.power);
-        cut.open = add(cut.open, scaled(unit, power));
-        let relative = cut.relative(&bound, self.asked());
-        heap.order.push((relative.to_bits(), heap.entries.len() as u32));
-        heap.entries.push(Entry { node: child, bound, unit: stored(unit) });
-    }
-
-    /// Light of a child's representative, for a power of 1.
-    #[inline(always)]
-    fn representative<L: Lanes>(&self, tree: &ClusterTree, child: u32, counts: &mut Counts) -> Wide3<L> {
-        let light = &tree.lights[representative_of(tree, child) as usize];
-        let power = L::splat(light_power(light.intensity));
-        divided(self.light(light, counts), power)
-    }
 }
 
 /// What was gathered, point by point.
@@ -280,31 +147,4 @@ fn gathered<L: Lanes>(light: Wide3<L>, size: u32, bound: L) -> [Gathered; LANES]
         size,
         bound: bound[lane],
     })
-}
-
-/// A cut on its way.
-struct Cut<L> {
-    /// What lights sent that are in the cut.
-    done: Wide3<L>,
-    /// Light of the clusters in the heap.
-    open: Wide3<L>,
-    /// Lights in the cut.
-    size: u32,
-    /// The light of all, as a sum of channels; what was gathered so far where it is not known.
-    references: Option<L>,
-}
-
-impl<L: Lanes> Cut<L> {
-    /// The greatest share of the light of all that a bound is, among the points in `asked`.
-    #[inline(always)]
-    fn relative(&self, bound: &[f32; LANES], asked: u32) -> f32 {
-        let total = if let Some(references) = self.references {
-            references
-        } else {
-            let sum = add(self.done, self.open);
-            sum[0] + sum[1] + sum[2]
-        };
-        let shares = (L::load(bound) / total.max(L::splat(f32::MIN_POSITIVE))).and(L::mask(asked));
-        shares.store().into_iter().fold(0.0, f32::max)
-    }
 }

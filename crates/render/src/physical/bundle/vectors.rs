@@ -2,9 +2,15 @@
 //!
 //! Written out: a closure would be a function of its own, without the features of the one around it.
 
-use super::Vectors;
 use crate::cpu::Lanes;
 use glam::Vec3;
+use lightcuts_world::bvh::LANES;
+
+/// A vector for each point, by axes.
+pub(super) type Vectors = [[f32; LANES]; 3];
+
+/// Three perpendicular unit vectors for each point.
+pub(super) type Frames = [Vectors; 3];
 
 /// Three lanes of numbers.
 pub(super) type Wide3<L> = [L; 3];

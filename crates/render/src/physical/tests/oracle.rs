@@ -2,7 +2,7 @@
 
 use super::scenes::{glossy_room, room};
 use crate::cpu::Simd;
-use crate::physical::bundle::{Bundle, BundleHeap, Fineness};
+use crate::physical::bundle::{Bundle, Clusters, Cutting, Fineness};
 use crate::physical::cluster_tree::ClusterTree;
 use crate::physical::emission::Origins;
 use crate::physical::gather::{CutHeap, Gathered, Receiver};
@@ -142,14 +142,14 @@ fn points_that_are_lit_together_are_lit_as_each_is() {
         let scenes = [Simd::Auto, Simd::Off].map(|simd| Scene::new(&world, simd));
         let origins = Origins::new(&scenes[0]).unwrap();
         let tree = tree(&scenes[0], &origins, paths, 3);
-        let (mut heap, mut counts) = (BundleHeap::default(), Counts::default());
+        let (mut clusters, mut counts) = (Clusters::default(), Counts::default());
         let points = every_pixel(&scenes[0], 22);
         for (number, points) in points.chunks(LANES).enumerate() {
             let bundles = scenes.each_ref().map(|scene| {
                 let receivers: Vec<_> = points.iter().map(|(_, at)| receiver(scene, at)).collect();
                 Bundle::new(&receivers)
             });
-            let [wide, plain] = [0, 1].map(|k| bundles[k].all(&tree, scenes[k].simd, &mut counts));
+            let [wide, plain] = [0, 1].map(|k| bundles[k].all(&tree, &mut counts));
             assert_eq!(wide, plain, "{name} {number}");
             let each: Vec<Vec3> =
                 points.iter().map(|(_, at)| receiver(&scenes[0], at).all(&tree, &mut counts).light).collect();
@@ -157,10 +157,18 @@ fn points_that_are_lit_together_are_lit_as_each_is() {
                 let difference = (wide[lane].light - all).abs().max_element();
                 assert!(difference <= 2e-5 * all.max_element(), "{name} {number} {lane}: {difference}");
             }
-            let known: [f32; LANES] = std::array::from_fn(|lane| each.get(lane).map_or(0.0, |&all| light_power(all)));
-            for (error, known) in [(0.3, None), (0.02, None), (0.02, Some(&known)), (0.0, None)] {
-                let [wide, plain] = [0, 1]
-                    .map(|k| bundles[k].cut(&tree, fineness(error), known, &mut heap, scenes[k].simd, &mut counts));
+            let known: [f32; LANES] = std::array::from_fn(|lane| light_power(each[lane.min(each.len() - 1)]));
+            let most = u32::MAX;
+            for (error, max_cut, references) in [
+                (0.3, most, None),
+                (0.02, most, None),
+                (0.02, most, Some(known)),
+                (0.02, 60, Some(known)),
+                (0.0, most, None),
+                (0.0, most, Some(known)),
+            ] {
+                let cutting = Cutting { tree: &tree, fineness: Fineness { error, max_cut }, references };
+                let [wide, plain] = [0, 1].map(|k| bundles[k].cut(&cutting, &mut clusters, &mut counts));
                 assert_eq!(wide, plain, "{name} {number}");
                 for (lane, &all) in each.iter().enumerate() {
                     check(all, &wide[lane], error, &format!("{name} {number} {lane}"));
