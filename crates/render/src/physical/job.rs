@@ -115,10 +115,6 @@ impl<'a> PhysicalJob<'a> {
             if taken >= wanted {
                 return;
             }
-            // Paths alone need to know nothing.
-            if uses_vpls {
-                self.mixture.learn();
-            }
             let noise = self.settings.physical.noise;
             let is_time_to_look = (pass + 1).is_multiple_of(NOISE_INTERVAL);
             if is_time_to_look && noise > 0.0 && self.mixture.noise() <= f64::from(noise) {
@@ -140,13 +136,19 @@ impl<'a> PhysicalJob<'a> {
     /// One pass; returns whether it came to its end.
     fn run_pass(&mut self, pass: u32, tasks: &[Task], pilot: &[f32], steps: &Steps) -> bool {
         let techniques = self.plan.techniques().to_vec();
-        let tree = tasks.iter().any(|task| techniques[task.technique].uses_vpls()).then(|| self.plant(pass));
+        let tree = tasks.iter().any(|task| techniques[task.technique].uses_vpls()).then(|| {
+            // What cuts go by.
+            if pass > 0 {
+                self.mixture.learn_light();
+            }
+            self.plant(pass)
+        });
         let caustics = self.shoot_photons(pass);
         let references = if pass == 0 { pilot } else { self.mixture.references() };
         let clamp = self.clamp();
         let vpls = tree.map(|tree| Lightcuts { tree, settings: &self.settings.physical, clamp, references });
         let samples = stream(self.settings.run.seed, SAMPLES);
-        let probes = [0, 1].map(|half| self.stream(PROBES, half));
+        let probes = stream(self.settings.run.seed, PROBES);
         let sample_pass = self.sample_pass(vpls, caustics);
         let (monitor, started, mixture) = (self.monitor, self.started, &self.mixture);
         let limit = self.settings.physical.time_limit;
@@ -155,11 +157,15 @@ impl<'a> PhysicalJob<'a> {
         let results: Vec<Option<SampledTile>> = tasks
             .par_iter()
             .map(|&task| {
-                let place = (techniques[task.technique], mixture.part(task.technique, task.half));
+                let (technique, before) = (techniques[task.technique], mixture.moments(task.technique));
                 let tile = &mixture.tiles()[task.tile];
-                let stream = if task.extent.samples() > 0 { samples } else { probes[task.half] };
+                let stream = match task.extent {
+                    Extent::Whole(_) if task.technique == 0 => samples,
+                    Extent::Whole(_) => stream(samples, task.technique as u32),
+                    Extent::Probe(_) => probes,
+                };
                 let rendered = (!monitor.cancelled() && !is_up())
-                    .then(|| sample_pass.render(task, tile, place.0, place.1, stream));
+                    .then(|| sample_pass.render(task, tile, technique, before, stream));
                 (0..task.extent.samples()).for_each(|_| steps.advance(monitor, started));
                 rendered
             })
@@ -169,6 +175,9 @@ impl<'a> PhysicalJob<'a> {
             self.mixture.add(sampled);
             self.plan.learn(sampled);
             self.counts.add(&sampled.counts);
+        }
+        if tasks.iter().any(|task| task.extent.samples() == 0) {
+            self.mixture.learn_variances();
         }
         is_whole
     }
@@ -201,17 +210,17 @@ impl<'a> PhysicalJob<'a> {
         let mut mixture = Mixture::new(image.width, image.height, 1);
         let pass = self.sample_pass(None, None);
         let stream = stream(self.settings.run.seed, PILOT);
-        let (monitor, part) = (self.monitor, mixture.part(0, 0));
+        let monitor = self.monitor;
         let results: Vec<Option<SampledTile>> = (0..mixture.tiles().len())
             .into_par_iter()
             .map(|tile| {
-                let task = Task { tile, technique: 0, half: 0, extent: Extent::Whole(1) };
+                let task = Task { tile, technique: 0, extent: Extent::Whole(1) };
                 let tile = &mixture.tiles()[tile];
-                (!monitor.cancelled()).then(|| pass.render(task, tile, Technique::Path, part, stream))
+                (!monitor.cancelled()).then(|| pass.render(task, tile, Technique::Path, None, stream))
             })
             .collect();
         results.iter().flatten().for_each(|sampled| mixture.add(sampled));
-        mixture.learn();
+        mixture.learn_light();
         mixture.references().to_vec()
     }
 
@@ -273,9 +282,6 @@ impl<'a> PhysicalJob<'a> {
     }
 
     fn finish(mut self) -> PhysicalRendering {
-        if self.plan.techniques().len() > 1 {
-            self.mixture.learn();
-        }
         let stats = &mut self.stats;
         stats.rays.primary = self.counts.primary;
         stats.rays.secondary = self.counts.bounces;

@@ -27,6 +27,10 @@ const GREATEST_GATHERED_EXPONENT: f32 = 60.0;
 /// Lights that are drawn at a vertex that gathers a whole cut: its share of the time is small.
 const FIRST_LIGHTS: u32 = 4;
 
+/// Lights that are drawn at a vertex with a glossy lobe: the fewer, the more is left to rays that meet a light by chance, which is
+/// where single pixels come out too bright.
+const GLOSSY_LIGHTS: u32 = 8;
+
 /// Virtual lights that are drawn where a path comes to its second matt vertex.
 const DRAWN_LIGHTS: u32 = 4;
 
@@ -222,7 +226,14 @@ impl Gathering<'_> {
         if lobes & lobes_of(&at.bsdf) == 0 || vertex + 1 == MAX_VERTICES {
             return None;
         }
-        let lights = if walk.is_first { FIRST_LIGHTS } else { 1 };
+        let is_glossy = lobes & lobes_of(&at.bsdf) & GLOSSY != 0;
+        let lights = if is_glossy {
+            GLOSSY_LIGHTS
+        } else if walk.is_first {
+            FIRST_LIGHTS
+        } else {
+            1
+        };
         let direct = DirectLight { scene, at: &at, lobes, lights, before: walk.before.as_ref() };
         let random = || {
             let [u, v, choice, _] = randoms.next();

@@ -1,34 +1,28 @@
 //! What a render has so far: sums for each technique, and the picture that they make together.
 //!
 //! Where several techniques show the same light, each tile weighs them by the inverse of their variances. If a variance came from
-//! the samples that it weighs, a rare bright sample would lower its own weight, and pictures would be too dark. So samples go
-//! into two halves by turns, and what is learnt from one half weighs, and chooses for, the other.
+//! the samples that it weighs, a rare bright sample would lower its own weight, and pictures would be too dark. So variances come
+//! from probes, samples of a few pixels that are not shown.
 
-use super::pass::{Extent, Moments, PROBED_PIXELS, PixelSums, SampledTile, Task, probed};
+use super::pass::{Extent, Moments, PROBES_OF_A_GROUP, PixelSums, SampledTile, Task, probed};
 use super::rendering::PhysicalRendering;
 use crate::film::{Film, Tile};
 use crate::stats::Stats;
 use glam::Vec3;
 use lightcuts_image::{Image, Plane};
-use lightcuts_kernel::rng::stream;
 use rayon::prelude::*;
 
 /// Edge of a tile in pixels.
 pub(crate) const TILE_SIZE: u32 = 16;
 
-/// Most canvases: two halves of four techniques.
-const MOST_CANVASES: usize = 8;
+/// Most techniques of a render.
+const MOST_TECHNIQUES: usize = 4;
 
 /// Degrees of freedom that the whole picture has beside a tile's own in the estimate of a variance.
-const PICTURE_FREEDOM: f64 = 64.0;
+const PICTURE_FREEDOM: f64 = 256.0;
 
 /// Brightness below which errors count no more, relative to the picture's mean.
 const DARK: f64 = 0.8;
-
-/// Samples that a tile's pixels must have in both halves to tell how good they are together, and what they are trusted to be at
-/// best, relative to independent ones.
-const LEAST_SHOWN: u32 = 4;
-const LEAST_GAIN: f64 = 0.1;
 
 /// Techniques with less weight than this are left out: what they would add is less than what a bright speck of theirs, of which
 /// the variance did not know, would spoil.
@@ -37,7 +31,7 @@ const LEAST_WEIGHT: f64 = 0.1;
 /// Variances below this, relative to the pixels' squares, are taken as this.
 const LEAST_VARIANCE: f64 = 1e-9;
 
-/// Sums of one technique in one half.
+/// Sums of one technique.
 struct Canvas {
     all: Film,
     indirect: Film,
@@ -45,9 +39,8 @@ struct Canvas {
     moments: Vec<Moments>,
     /// Of each tile: samples of each of its pixels.
     shown: Vec<u32>,
-    /// Of each tile: what probes found at its probed pixels. It is not shown: single pixels that differ from their tile would get
-    /// much weight from few samples.
-    probes: Vec<Vec<Moments>>,
+    /// Of each tile: what probes found at pixels, one group of them after the other.
+    probes: Vec<Vec<(usize, Moments)>>,
 }
 
 /// What probes tell of a technique's variance, relative to the pixels' squares.
@@ -76,50 +69,26 @@ pub(crate) struct Mixture {
     width: usize,
     height: usize,
     tiles: Vec<Tile>,
-    halves: usize,
     /// Bottom row first.
     pixels: Vec<PixelSums>,
-    /// By technique and half; made when they are needed.
+    /// By technique; made when they are needed.
     canvases: Vec<Option<Canvas>>,
-    /// Of each canvas and tile: variance of a sample, relative to the pixel's square; `None` where nothing is known.
+    /// Of each technique and tile: variance of a sample, relative to the pixel's square; `None` where nothing is known.
     variances: Vec<Vec<Option<f64>>>,
     /// What the light of each pixel is, as a sum of channels. Empty before the first pass.
     references: Vec<f32>,
 }
 
-/// A canvas to which samples are to be added.
-#[derive(Clone, Copy)]
-pub(crate) struct Part<'a> {
-    moments: Option<&'a [Moments]>,
-    /// Which canvas it is.
-    number: usize,
-}
-
-impl Part<'_> {
-    /// Samples that a pixel has already.
-    pub(crate) fn samples_before(&self, pixel: u32) -> u32 {
-        self.moments.map_or(0, |moments| moments[pixel as usize].samples)
-    }
-
-    /// Its own stream of random numbers: every other point of one sequence would be worse than a sequence.
-    pub(crate) fn stream(&self, all: u32) -> u32 {
-        if self.number == 0 { all } else { stream(all, self.number as u32) }
-    }
-}
-
 impl Mixture {
     pub(crate) fn new(width: u32, height: u32, techniques: usize) -> Self {
-        let halves = if techniques > 1 { 2 } else { 1 };
         let tiles = Tile::cover(width, height, TILE_SIZE);
-        let canvases = techniques * halves;
-        assert!(canvases <= MOST_CANVASES);
+        assert!(techniques <= MOST_TECHNIQUES);
         Self {
             width: width as usize,
             height: height as usize,
-            halves,
             pixels: vec![PixelSums::default(); width as usize * height as usize],
-            canvases: (0..canvases).map(|_| None).collect(),
-            variances: vec![vec![None; tiles.len()]; canvases],
+            canvases: (0..techniques).map(|_| None).collect(),
+            variances: vec![vec![None; tiles.len()]; techniques],
             references: Vec::new(),
             tiles,
         }
@@ -129,15 +98,9 @@ impl Mixture {
         &self.tiles
     }
 
-    /// The half into which the samples of a tile's turn go.
-    pub(crate) fn half_of(&self, turn: u32) -> usize {
-        turn as usize % self.halves
-    }
-
-    /// Where a technique's samples of a half go.
-    pub(crate) fn part(&self, technique: usize, half: usize) -> Part<'_> {
-        let number = technique * self.halves + half;
-        Part { moments: self.canvases[number].as_ref().map(|canvas| &canvas.moments[..]), number }
+    /// What the samples of a technique tell of each pixel so far, bottom row first; `None` before the first one.
+    pub(crate) fn moments(&self, technique: usize) -> Option<&[Moments]> {
+        self.canvases[technique].as_ref().map(|canvas| &canvas.moments[..])
     }
 
     /// What the light of each pixel is, as a sum of channels; empty before the first pass.
@@ -149,19 +112,29 @@ impl Mixture {
     pub(crate) fn add(&mut self, sampled: &SampledTile) {
         let (width, height) = (self.width, self.height);
         let tiles = self.tiles.len();
-        let Task { tile, technique, half, extent } = sampled.task;
-        let canvas = self.canvases[technique * self.halves + half].get_or_insert_with(|| Canvas {
+        let Task { tile, technique, extent } = sampled.task;
+        let canvas = self.canvases[technique].get_or_insert_with(|| Canvas {
             all: Film::new(width as u32, height as u32),
             indirect: Film::new(width as u32, height as u32),
             moments: vec![Moments::default(); width * height],
             shown: vec![0; tiles],
-            probes: vec![vec![Moments::default(); PROBED_PIXELS]; tiles],
+            probes: vec![Vec::new(); tiles],
         });
-        let Extent::Whole(samples) = extent else {
-            for ((place, _), probe) in probed(&self.tiles[tile]).zip(&mut canvas.probes[tile]) {
-                probe.add(&sampled.moments[place]);
+        let samples = match extent {
+            Extent::Whole(samples) => samples,
+            Extent::Probe(number) => {
+                let probes = &mut canvas.probes[tile];
+                let pixel = |(i, j): (u32, u32)| j as usize * width + i as usize;
+                let group: Vec<_> = probed(&self.tiles[tile], number).collect();
+                if number.is_multiple_of(PROBES_OF_A_GROUP) {
+                    probes.extend(group.iter().map(|&(_, place)| (pixel(place), Moments::default())));
+                }
+                let first = probes.len() - group.len();
+                for ((place, _), (_, probe)) in group.into_iter().zip(&mut probes[first..]) {
+                    probe.add(&sampled.moments[place]);
+                }
+                return;
             }
-            return;
         };
         canvas.all.merge(&sampled.all);
         canvas.indirect.merge(&sampled.indirect);
@@ -173,22 +146,21 @@ impl Mixture {
         }
     }
 
-    /// Takes stock after a pass: what pixels are like, and how much techniques vary.
-    pub(crate) fn learn(&mut self) {
+    /// Takes stock of what the light of each pixel is.
+    pub(crate) fn learn_light(&mut self) {
         self.references = self.smooth_light();
-        if self.halves > 1 {
-            let dark = self.dark();
-            for canvas in 0..self.canvases.len() {
-                let gain = self.gain(canvas / self.halves, dark);
-                self.variances[canvas] = self.tile_variances(self.canvases[canvas].as_ref(), gain, dark);
-            }
-        }
     }
 
-    /// Variance of a technique's sample in a tile, relative to the pixel's square, from the other half than the one for which it is
-    /// asked.
-    pub(crate) fn variance_for(&self, technique: usize, half: usize, tile: usize) -> Option<f64> {
-        self.variances[technique * self.halves + self.halves - 1 - half][tile]
+    /// Takes stock of how much techniques vary, after probes.
+    pub(crate) fn learn_variances(&mut self) {
+        let dark = self.dark();
+        let variances = self.canvases.iter().map(|canvas| self.tile_variances(canvas.as_ref(), dark));
+        self.variances = variances.collect();
+    }
+
+    /// Variance of a technique's sample in a tile, relative to the pixel's square.
+    pub(crate) fn variance_in(&self, technique: usize, tile: usize) -> Option<f64> {
+        self.variances[technique][tile]
     }
 
     /// What the light of each pixel is, as a sum of channels: mean over the pixel's neighbourhood, of reflected light only, for a
@@ -199,15 +171,16 @@ impl Mixture {
         let of_row = |j: usize| {
             let rows = j.saturating_sub(REACH)..=(j + REACH).min(height - 1);
             let smooth = move |i: usize| {
-                let (mut sum, mut samples) = (0.0, 0.0);
+                let (mut all, mut cuts) = ((0.0, 0), (0.0, 0));
                 for row in rows.clone() {
                     let columns = i.saturating_sub(REACH)..=(i + REACH).min(width - 1);
                     for pixel in &self.pixels[row * width + columns.start()..=row * width + columns.end()] {
-                        sum += pixel.reflected;
-                        samples += f64::from(pixel.samples);
+                        all = (all.0 + pixel.reflected, all.1 + pixel.samples);
+                        cuts = (cuts.0 + pixel.gathered, cuts.1 + pixel.cuts);
                     }
                 }
-                if samples > 0.0 { (sum / samples) as f32 } else { 0.0 }
+                let (sum, samples) = if cuts.1 > 0 { cuts } else { all };
+                (sum / f64::from(samples.max(1))) as f32
             };
             (0..width).map(smooth)
         };
@@ -231,44 +204,18 @@ impl Mixture {
         brightness * brightness + dark
     }
 
-    /// What evenly spread points make of a technique's variance: errors of means, as both halves show them, relative to what the
-    /// spread of their samples lets expect. It takes many pixels to tell, so the whole picture has one, which no single bright
-    /// sample moves much; 1 where nothing is known.
-    fn gain(&self, technique: usize, dark: f64) -> f64 {
-        let of_half = |half: usize| self.canvases[technique * self.halves + half].as_ref();
-        let (Some(first), Some(second)) = (of_half(0), of_half(1)) else { return 1.0 };
-        let of_tile = |(number, tile): (usize, &Tile)| {
-            let shown = [first.shown[number], second.shown[number]];
-            if shown.into_iter().min() < Some(LEAST_SHOWN) {
-                return [0.0; 2];
-            }
-            tile.pixels().fold([0.0; 2], |[found, expected], (i, j)| {
-                let pixel = j as usize * self.width + i as usize;
-                let (a, b) = (&first.moments[pixel], &second.moments[pixel]);
-                let scale_sq = self.scale_sq(pixel, dark);
-                let difference = a.mean() - b.mean();
-                let of_means = a.variance_of_mean() + b.variance_of_mean();
-                [found + difference * difference / scale_sq, expected + of_means / scale_sq]
-            })
-        };
-        let sums: Vec<[f64; 2]> = self.tiles.par_iter().enumerate().map(of_tile).collect();
-        let [found, expected] = sums.iter().fold([0.0; 2], |sum, tile| [sum[0] + tile[0], sum[1] + tile[1]]);
-        if expected > 0.0 { (found / expected).clamp(LEAST_GAIN, 1.0) } else { 1.0 }
-    }
-
-    /// Variances of a canvas in all tiles.
-    fn tile_variances(&self, canvas: Option<&Canvas>, gain: f64, dark: f64) -> Vec<Option<f64>> {
+    /// Variances of a technique in all tiles.
+    fn tile_variances(&self, canvas: Option<&Canvas>, dark: f64) -> Vec<Option<f64>> {
         let Some(canvas) = canvas else { return vec![None; self.tiles.len()] };
-        let of_tile = |(tile, probes): (&Tile, &Vec<Moments>)| {
-            probed(tile).zip(probes).fold(Known::default(), |known, ((_, (i, j)), moments)| {
-                let pixel = j as usize * self.width + i as usize;
+        let of_tile = |probes: &Vec<(usize, Moments)>| {
+            probes.iter().fold(Known::default(), |known, &(pixel, moments)| {
                 let spread = moments.spread() / self.scale_sq(pixel, dark);
                 known.with(&Known { spread, freedom: f64::from(moments.samples.saturating_sub(1)) })
             })
         };
-        let own: Vec<Known> = self.tiles.iter().zip(&canvas.probes).map(of_tile).collect();
+        let own: Vec<Known> = canvas.probes.iter().map(of_tile).collect();
         let all = own.iter().fold(Known::default(), Known::with);
-        own.iter().map(|own| own.variance(&all).map(|variance| variance * gain)).collect()
+        own.iter().map(|own| own.variance(&all)).collect()
     }
 
     fn tile_of(&self, i: usize, j: usize) -> usize {
@@ -276,50 +223,33 @@ impl Mixture {
         j / size * self.width.div_ceil(size) + i / size
     }
 
-    /// Weights of the canvases in a tile. They sum to 1 if it has a sample.
-    fn weights(&self, tile: usize) -> [f64; MOST_CANVASES] {
-        let mut weights = [0.0; MOST_CANVASES];
-        if self.canvases.len() == 1 {
-            weights[0] = 1.0;
-            return weights;
-        }
-        let shown = |canvas: usize| self.canvases[canvas].as_ref().map_or(0.0, |canvas| f64::from(canvas.shown[tile]));
-        let techniques = self.canvases.len() / self.halves;
-        let mut sums = [0.0; 2];
-        for (half, sum) in sums.iter_mut().enumerate() {
-            let known = |technique| {
-                let variance = self.variance_for(technique, half, tile);
-                variance.map_or(0.0, |variance| shown(technique * self.halves + half) / variance)
-            };
-            // Before anything is known, samples count alike.
-            let is_known = (0..techniques).any(|technique| known(technique) > 0.0);
-            let weight = |technique| {
-                if is_known { known(technique) } else { shown(technique * self.halves + half) }
-            };
-            let all: f64 = (0..techniques).map(weight).sum();
-            for technique in (0..techniques).filter(|&technique| weight(technique) >= LEAST_WEIGHT * all) {
-                weights[technique * self.halves + half] = weight(technique);
-                *sum += weight(technique);
-            }
-        }
-        let halves_there = sums.iter().filter(|&&sum| sum > 0.0).count() as f64;
-        for (canvas, weight) in weights.iter_mut().enumerate() {
-            let sum = sums[canvas % self.halves];
-            *weight = if sum > 0.0 { *weight / (sum * halves_there) } else { 0.0 };
-        }
-        weights
+    /// Weights of the techniques in a tile. They sum to 1 if it has a sample.
+    fn weights(&self, tile: usize) -> [f64; MOST_TECHNIQUES] {
+        let shown =
+            |technique: usize| self.canvases[technique].as_ref().map_or(0.0, |canvas| f64::from(canvas.shown[tile]));
+        let known = |technique| self.variance_in(technique, tile).map_or(0.0, |variance| shown(technique) / variance);
+        let techniques = self.canvases.len();
+        // Before anything is known, samples count alike.
+        let is_known = (0..techniques).any(|technique| known(technique) > 0.0);
+        let weight = |technique| if is_known { known(technique) } else { shown(technique) };
+        let all: f64 = (0..techniques).map(weight).sum();
+        let kept = |technique| Some(weight(technique)).filter(|&weight| weight > 0.0 && weight >= LEAST_WEIGHT * all);
+        let sum: f64 = (0..techniques).filter_map(kept).sum();
+        std::array::from_fn(|technique| {
+            if technique < techniques { kept(technique).map_or(0.0, |weight| weight / sum) } else { 0.0 }
+        })
     }
 
     /// Variance of a pixel's brightness.
     fn variance(&self, i: usize, j: usize, dark: f64) -> f64 {
         let (pixel, tile) = (j * self.width + i, self.tile_of(i, j));
         let weights = self.weights(tile);
-        let of = |(part, (canvas, weight)): (&Option<Canvas>, (usize, f64))| {
+        let of = |(part, (technique, weight)): (&Option<Canvas>, (usize, f64))| {
             let part = part.as_ref().filter(|_| weight > 0.0)?;
             let moments = part.moments[pixel];
             let of_sample = match moments.samples {
                 // A single sample says nothing: its tile does.
-                0 | 1 => self.variances[canvas][tile].map_or(0.0, |v| v * self.scale_sq(pixel, dark)),
+                0 | 1 => self.variances[technique][tile].map_or(0.0, |v| v * self.scale_sq(pixel, dark)),
                 n => moments.variance_of_mean() * f64::from(n),
             };
             Some(weight * weight * of_sample / f64::from(part.shown[tile].max(1)))

@@ -2,7 +2,6 @@
 
 use super::caustics::CausticMap;
 use super::lightcuts::Lightcuts;
-use super::mixture::Part;
 use super::path::Radiance;
 use super::randoms::Randoms;
 use super::scene::{Cone, Interaction, Scene};
@@ -90,8 +89,9 @@ pub(crate) struct PixelSums {
     /// Of the cuts: sizes, and bounds of their errors.
     pub(crate) cut: f32,
     pub(crate) bound: f32,
-    /// Samples that have a cut.
+    /// Samples that have a cut, and what was scattered at least once of them.
     pub(crate) cuts: u32,
+    pub(crate) gathered: f64,
 }
 
 impl PixelSums {
@@ -110,6 +110,7 @@ impl PixelSums {
         self.cut += other.cut;
         self.bound += other.bound;
         self.cuts += other.cuts;
+        self.gathered += other.gathered;
     }
 
     fn see(&mut self, first: &FirstHit) {
@@ -162,8 +163,6 @@ pub(crate) struct Task {
     pub(crate) tile: usize,
     /// Number of the technique.
     pub(crate) technique: usize,
-    /// The half that the samples go into.
-    pub(crate) half: usize,
     pub(crate) extent: Extent,
 }
 
@@ -190,8 +189,8 @@ impl Extent {
 /// quickest with them.
 const PROBED_PARTS: u32 = 2;
 
-/// Pixels of a probe, at most.
-pub(crate) const PROBED_PIXELS: usize = 4 * PROBED_PARTS as usize;
+/// Probes of the same pixels, so that their samples can be compared; the next ones see others.
+pub(crate) const PROBES_OF_A_GROUP: u32 = 4;
 
 /// What a pass is: everything that its samples share.
 pub(crate) struct SamplePass<'a> {
@@ -206,8 +205,8 @@ pub(crate) struct SamplePass<'a> {
 /// Which random numbers a task gets.
 #[derive(Clone, Copy)]
 struct Points<'a> {
-    /// What the samples are added to; none of probes.
-    part: Option<Part<'a>>,
+    /// What each pixel has already; none of probes.
+    before: Option<&'a [Moments]>,
     first: u32,
     stream: u32,
 }
@@ -246,20 +245,20 @@ pub(crate) struct Sampled {
 }
 
 impl SamplePass<'_> {
-    /// Takes the samples of a task with random numbers of a stream; `part` is what those before went into.
+    /// Takes the samples of a task with random numbers of a stream; `before` is what each pixel has of it already.
     pub(crate) fn render(
         &self,
         task: Task,
         tile: &Tile,
         technique: Technique,
-        part: Part<'_>,
+        before: Option<&[Moments]>,
         stream: u32,
     ) -> SampledTile {
         let clock = ThreadClock::start();
         let points = match task.extent {
-            Extent::Whole(_) => Points { part: Some(part), first: 0, stream: part.stream(stream) },
+            Extent::Whole(_) => Points { before, first: 0, stream },
             // Techniques are compared by the same points: what any of them would see counts for all.
-            Extent::Probe(number) => Points { part: None, first: number, stream },
+            Extent::Probe(number) => Points { before: None, first: number, stream },
         };
         let film = Film::around(tile, self.filter);
         let area = (tile.width * tile.height) as usize;
@@ -280,8 +279,8 @@ impl SamplePass<'_> {
                     }
                 }
             }
-            Extent::Probe(_) => {
-                self.sample_pixels(&probed(tile).collect::<Vec<_>>(), technique, points, &mut result);
+            Extent::Probe(number) => {
+                self.sample_pixels(&probed(tile, number).collect::<Vec<_>>(), technique, points, &mut result);
             }
         }
         result.seconds = clock.seconds();
@@ -301,7 +300,7 @@ impl SamplePass<'_> {
         let mut shifts = [[0.0; 2]; LANES];
         for (slot, &(k, (i, j))) in pixels.iter().enumerate() {
             let pixel = j * self.lens.width + i;
-            let before = points.part.map_or(points.first, |part| part.samples_before(pixel));
+            let before = points.before.map_or(points.first, |moments| moments[pixel as usize].samples);
             let mut randoms = Randoms::new(pixel, before + result.moments[k].samples, points.stream);
             let [x, y, u, v] = randoms.next();
             let ray = lens_ray(&self.lens, [i as f32 + x, j as f32 + y], [u, v]);
@@ -333,12 +332,15 @@ impl SamplePass<'_> {
         let Sampled { radiance, first, cut, bound } = *sampled;
         result.all.add(self.filter, i, j, shift, radiance.all);
         result.indirect.add(self.filter, i, j, shift, radiance.indirect);
-        let brightness = f64::from(light_power(radiance.all)) / 3.0;
-        result.moments[k].add(&Moments { samples: 1, sum: brightness, sum_sq: brightness * brightness });
         let emitted = f64::from(light_power(radiance.emitted));
         let reflected = f64::from(light_power(radiance.all)) - emitted;
+        // Lights in the picture are the same to all techniques, and pixels on their edges vary more than all others.
+        let is_probe = result.task.extent.samples() == 0;
+        let brightness = if is_probe { reflected } else { reflected + emitted } / 3.0;
+        result.moments[k].add(&Moments { samples: 1, sum: brightness, sum_sq: brightness * brightness });
         let cuts = u32::from(technique.uses_vpls());
-        let mut sums = PixelSums { samples: 1, reflected, emitted, cut, bound, cuts, ..PixelSums::default() };
+        let gathered = f64::from(cuts) * reflected;
+        let mut sums = PixelSums { samples: 1, reflected, emitted, cut, bound, cuts, gathered, ..PixelSums::default() };
         if let Some(first) = &first {
             sums.see(first);
         }
@@ -360,11 +362,11 @@ fn blocks(tile: &Tile) -> impl Iterator<Item = Vec<(usize, (u32, u32))>> {
     })
 }
 
-/// The pixels of a probe, each with its place in the tile: always the same ones, so that their samples can be compared.
-pub(crate) fn probed(tile: &Tile) -> impl Iterator<Item = (usize, (u32, u32))> {
+/// The pixels of a probe, each with its place in the tile.
+pub(crate) fn probed(tile: &Tile, number: u32) -> impl Iterator<Item = (usize, (u32, u32))> {
     let Tile { i, j, width, height } = *tile;
     (0..PROBED_PARTS).flat_map(move |part| {
-        let [u, v, ..] = random4(part, 0, i, j);
+        let [u, v, ..] = random4(part, number / PROBES_OF_A_GROUP, i, j);
         let (first, end) = (width * part / PROBED_PARTS, width * (part + 1) / PROBED_PARTS);
         let place = |places: u32, random: f32| (places.saturating_sub(1) as f32 * random) as u32;
         let (left, bottom) = (first + place(end - first, u), place(height, v));

@@ -28,7 +28,7 @@ impl Technique {
         match settings.physical.integrator {
             Integrator::Path => vec![Self::Path],
             Integrator::Lightcuts => vpls.collect(),
-            Integrator::Auto => vpls.chain(std::iter::once(Self::Path)).collect(),
+            Integrator::Auto => std::iter::once(Self::Path).chain(vpls).collect(),
         }
     }
 
