@@ -82,23 +82,55 @@ pub fn emitter_importance(node: &EmitterNode, lit: &Lit) -> f32 {
     node.power * cos_emitted.max(1e-4) * cos_received.max(1e-4) / floor
 }
 
-/// A light drawn by importance, with its probability; `None` if none can shine on the point.
-pub fn sample_emitter_tree(nodes: &[EmitterNode], lit: &Lit, random: f32) -> Option<(u32, f32)> {
-    let (mut index, mut probability, mut random) = (0_usize, 1.0, random);
-    loop {
-        let node = nodes.get(index)?;
-        if node.right == NONE {
-            let shines = index != 0 || emitter_importance(node, lit) > 0.0;
-            return shines.then_some((node.left, probability));
-        }
-        let left = left_probability(nodes, node, lit)?;
-        if random < left {
-            (index, probability, random) = (node.left as usize, probability * left, random / left);
-        } else {
-            (index, probability) = (node.right as usize, probability * (1.0 - left));
-            random = ((random - left) / (1.0 - left)).min(1.0 - f32::EPSILON);
+/// A light for each random number, drawn by importance, with its probability; `None` where it is found that none can shine on the
+/// point. Lights that are drawn together share the way down the tree as far as it is the same.
+pub fn sample_emitter_tree<const N: usize>(
+    nodes: &[EmitterNode],
+    lit: &Lit,
+    randoms: [f32; N],
+) -> [Option<(u32, f32)>; N] {
+    let mut found = [None; N];
+    let mut numbers = randoms;
+    // Those on the same way are neighbours in the order.
+    let mut order: [usize; N] = std::array::from_fn(|k| k);
+    // Ways that are still to be gone: a node, its probability, and the first and the end of those that go there.
+    let mut open = [(0_usize, 1.0_f32, 0, N); N];
+    let mut size = N.min(1);
+    while size > 0 {
+        size -= 1;
+        let (mut index, mut probability, first, mut end) = open[size];
+        while let Some(node) = nodes.get(index) {
+            if node.right == NONE {
+                if index != 0 || emitter_importance(node, lit) > 0.0 {
+                    order[first..end].iter().for_each(|&k| found[k] = Some((node.left, probability)));
+                }
+                break;
+            }
+            let Some(left) = left_probability(nodes, node, lit) else { break };
+            let mut middle = first;
+            for place in first..end {
+                let k = order[place];
+                if numbers[k] < left {
+                    numbers[k] /= left;
+                    order.swap(place, middle);
+                    middle += 1;
+                } else {
+                    numbers[k] = ((numbers[k] - left) / (1.0 - left)).min(1.0 - f32::EPSILON);
+                }
+            }
+            let right = (node.right as usize, probability * (1.0 - left), middle, end);
+            if middle == first {
+                (index, probability, ..) = right;
+                continue;
+            }
+            if middle < end {
+                open[size] = right;
+                size += 1;
+            }
+            (index, probability, end) = (node.left as usize, probability * left, middle);
         }
     }
+    found
 }
 
 /// The probability with which [`sample_emitter_tree`] comes to a leaf.
@@ -172,7 +204,7 @@ mod tests {
         let mut counts = [0_u32; 16];
         let n = 100_000;
         for k in 0..n {
-            let (light, probability) = sample_emitter_tree(&nodes, &lit, random4(k, 0, 0, 1)[0]).unwrap();
+            let (light, probability) = sample_emitter_tree(&nodes, &lit, [random4(k, 0, 0, 1)[0]])[0].unwrap();
             counts[light as usize] += 1;
             let again = leaf_probability(&nodes, 15 + light, &lit);
             assert!((again / probability - 1.0).abs() < 1e-4);
@@ -187,14 +219,26 @@ mod tests {
     }
 
     #[test]
+    fn lights_that_are_drawn_together_are_those_that_are_drawn_alone() {
+        let nodes = tree();
+        for k in 0..2_000 {
+            let [a, b, c, d] = random4(k, 0, 0, 2);
+            let lit = Lit { point: Vec3::new(a, b, c) * 3.0, normal: Vec3::Y, both_sides: d < 0.5 };
+            let numbers: [f32; 8] = std::array::from_fn(|place| random4(k, place as u32, 0, 3)[0]);
+            let alone = numbers.map(|number| sample_emitter_tree(&nodes, &lit, [number])[0]);
+            assert_eq!(sample_emitter_tree(&nodes, &lit, numbers), alone);
+        }
+    }
+
+    #[test]
     fn what_cannot_shine_is_not_drawn() {
         let nodes = tree();
         let above = Lit { point: Vec3::new(3.0, 5.0, 0.1), normal: Vec3::NEG_Y, both_sides: false };
-        assert_eq!(sample_emitter_tree(&nodes, &above, 0.5), None);
+        assert_eq!(sample_emitter_tree(&nodes, &above, [0.5])[0], None);
         let away = Lit { point: Vec3::new(3.0, -50.0, 0.1), normal: Vec3::NEG_Y, both_sides: false };
-        assert_eq!(sample_emitter_tree(&nodes, &away, 0.5), None);
-        assert!(sample_emitter_tree(&nodes, &Lit { both_sides: true, ..away }, 0.5).is_some());
-        assert_eq!(sample_emitter_tree(&[], &away, 0.5), None);
+        assert_eq!(sample_emitter_tree(&nodes, &away, [0.5])[0], None);
+        assert!(sample_emitter_tree(&nodes, &Lit { both_sides: true, ..away }, [0.5])[0].is_some());
+        assert_eq!(sample_emitter_tree(&[], &away, [0.5])[0], None);
     }
 
     /// Any point of a box from which an emitter of the cone shines on the receiver has importance.

@@ -185,7 +185,7 @@ fn lights_are_drawn_from_the_tree_with_their_probability() {
         // One cell for each light, and one for draws that find none.
         let (mut counts, mut expected) = (vec![0.0; 201], vec![0.0; 201]);
         for k in 0..n {
-            let drawn = sample_emitter_tree(&nodes, &lit, random4(k, view, 0, 24)[0]);
+            let drawn = sample_emitter_tree(&nodes, &lit, [random4(k, view, 0, 24)[0]])[0];
             counts[drawn.map_or(200, |(light, _)| light as usize)] += 1.0;
         }
         for (index, node) in nodes.iter().enumerate().filter(|(_, node)| node.right == NONE) {

@@ -17,9 +17,10 @@ use lightcuts_kernel::intersect::min_determinant;
 use lightcuts_kernel::ray::{Hit, NONE, Ray, SLAB_SLACK};
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
-    __m256, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_blendv_ps, _mm256_castps_si256,
-    _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpgt_epi32, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
-    _mm256_mul_ps, _mm256_or_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setzero_ps, _mm256_sub_ps,
+    __m256, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_and_si256, _mm256_blendv_ps,
+    _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_cmpgt_epi32, _mm256_cvtss_f32,
+    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_permute_ps,
+    _mm256_permute2f128_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32, _mm256_setzero_ps, _mm256_sub_ps,
 };
 
 /// So few rays are quicker alone.
@@ -72,11 +73,10 @@ impl<'a> Bundle<'a> {
             let (least, greatest) = range(packet.origin[axis], asked);
             // A side is farthest behind where the origin is farthest ahead.
             let [entering, leaving] = if backwards[axis] == 1 { [least, greatest] } else { [greatest, least] };
-            (origin[0][axis], origin[1][axis]) = (_mm256_set1_ps(entering), _mm256_set1_ps(leaving));
-            let (least, greatest) = range(reciprocal[axis], asked);
-            (slope[0][axis], slope[1][axis]) = (_mm256_set1_ps(least), _mm256_set1_ps(greatest));
+            (origin[0][axis], origin[1][axis]) = (entering, leaving);
+            (slope[0][axis], slope[1][axis]) = range(reciprocal[axis], asked);
         }
-        let t_min = _mm256_set1_ps(range(packet.t_min, asked).0);
+        let t_min = range(packet.t_min, asked).0;
         Some(Self { packet, reciprocal, backwards, origin, slope, t_min })
     }
 
@@ -117,7 +117,7 @@ impl<'a> Bundle<'a> {
     /// Which of the rays in `asked` hit a triangle.
     #[target_feature(enable = "avx2,fma,bmi1")]
     pub(super) fn any_hits(&self, geometry: &Geometry<'_>, rules: Rules, asked: u32) -> u32 {
-        let limit = _mm256_set1_ps(range(self.packet.t_max, asked).1);
+        let limit = range(self.packet.t_max, asked).1;
         let least = min_determinant(rules);
         // Nodes, each with the rays that enter it.
         let mut stack = Stack::<(u32, u32), STACK_SIZE>::new();
@@ -164,7 +164,7 @@ impl<'a> Bundle<'a> {
         let mut stack = Stack::<(u32, u32, f32), STACK_SIZE>::new();
         let mut next = (!geometry.nodes.is_empty()).then_some((0, ALL, 0.0));
         while let Some((index, active, entry)) = next {
-            if entry > limit {
+            if entry > _mm256_cvtss_f32(limit) {
                 // Everything that could be hit there lies behind.
             } else if active.count_ones() <= ALONE {
                 let mut hits = best.hits();
@@ -175,7 +175,7 @@ impl<'a> Bundle<'a> {
                 limit = range(best.t, ALL).1;
             } else {
                 let node = &geometry.nodes[index as usize];
-                let (mask, entry) = self.enter(node, _mm256_set1_ps(limit));
+                let (mask, entry) = self.enter(node, limit);
                 let (leaves, entries, base) = (node.triangles | node.others, store(entry), stack.size);
                 for lane in lanes(mask & leaves) {
                     if self.meet(node, lane, best.t) != 0 {
@@ -265,14 +265,21 @@ pub(super) fn closest_hits(tracer: &Tracer<'_>, rays: &[Ray; LANES]) -> [Hit; LA
     }
 }
 
-/// Least and greatest value of some lanes; `asked` has a bit for each.
+/// Least and greatest value of some lanes, each in all lanes; `asked` has a bit for each. What is no number does not count.
 #[target_feature(enable = "avx2,fma,bmi1")]
 #[inline]
-fn range(values: __m256, asked: u32) -> (f32, f32) {
-    let values = store(values);
-    let mut range = (f32::INFINITY, f32::NEG_INFINITY);
-    for lane in lanes(asked & ALL) {
-        range = (range.0.min(values[lane]), range.1.max(values[lane]));
-    }
-    range
+fn range(values: __m256, asked: u32) -> (__m256, __m256) {
+    let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    let counts = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(asked as i32), bits), bits);
+    let of_asked = |none: f32| _mm256_blendv_ps(_mm256_set1_ps(none), values, _mm256_castsi256_ps(counts));
+    // The second one of both operands is the result where either is no number.
+    let least = _mm256_min_ps(of_asked(f32::INFINITY), _mm256_set1_ps(f32::INFINITY));
+    let greatest = _mm256_max_ps(of_asked(f32::NEG_INFINITY), _mm256_set1_ps(f32::NEG_INFINITY));
+    let least = _mm256_min_ps(least, _mm256_permute2f128_ps::<1>(least, least));
+    let least = _mm256_min_ps(least, _mm256_permute_ps::<0b0100_1110>(least));
+    let least = _mm256_min_ps(least, _mm256_permute_ps::<0b1011_0001>(least));
+    let greatest = _mm256_max_ps(greatest, _mm256_permute2f128_ps::<1>(greatest, greatest));
+    let greatest = _mm256_max_ps(greatest, _mm256_permute_ps::<0b0100_1110>(greatest));
+    let greatest = _mm256_max_ps(greatest, _mm256_permute_ps::<0b1011_0001>(greatest));
+    (least, greatest)
 }

@@ -72,17 +72,16 @@ pub(crate) struct DirectLight<'a> {
     pub(crate) at: &'a Interaction,
     /// Lobes from which the path goes on.
     pub(crate) lobes: u32,
-    /// Number of lights.
-    pub(crate) lights: u32,
     /// Where the path came from.
     pub(crate) before: Option<&'a Before>,
 }
 
 impl DirectLight<'_> {
-    /// The estimate; `value` is the BSDF times the cosine for a direction.
-    pub(crate) fn estimate(
+    /// The estimate by a light for each point of random numbers, of which the last one is left; `value` is the BSDF times the cosine
+    /// for a direction.
+    pub(crate) fn estimate<const N: usize>(
         &self,
-        mut random: impl FnMut() -> [f32; 3],
+        points: [[f32; 4]; N],
         counts: &mut Counts,
         value: impl Fn(Vec3) -> Vec3,
     ) -> Vec3 {
@@ -90,18 +89,19 @@ impl DirectLight<'_> {
         if self.lobes & lobes_of(&self.at.bsdf) & (MATT | GLOSSY) == 0 || is_caustic {
             return Vec3::ZERO;
         }
-        let number = self.lights as f32;
+        // Each from its own part of all lights.
+        let choices: [f32; N] = std::array::from_fn(|k| (k as f32 + points[k][2]) / N as f32);
+        let drawn = self.scene.draw_lights(self.at, choices);
         let mut sum = Vec3::ZERO;
-        for k in 0..self.lights {
-            let [u, v, choice] = random();
-            // Each from its own part of all lights.
-            sum += self.light([u, v, (k as f32 + choice) / number], counts, &value);
+        for ([u, v, ..], drawn) in points.into_iter().zip(drawn) {
+            let arriving = drawn.and_then(|(light, chance)| self.scene.light_of(self.at, light, chance, [u, v]));
+            sum += arriving.map_or(Vec3::ZERO, |arriving| self.light(&arriving, N, counts, &value));
         }
-        sum / number
+        sum / N as f32
     }
 
-    fn light(&self, random: [f32; 3], counts: &mut Counts, value: &impl Fn(Vec3) -> Vec3) -> Vec3 {
-        let Some(arriving) = self.scene.sample_light(self.at, random) else { return Vec3::ZERO };
+    /// What one of so many drawn lights brings.
+    fn light(&self, arriving: &Arriving, number: usize, counts: &mut Counts, value: &impl Fn(Vec3) -> Vec3) -> Vec3 {
         let value = value(arriving.direction);
         if value == Vec3::ZERO {
             return Vec3::ZERO;
@@ -114,7 +114,7 @@ impl DirectLight<'_> {
             1.0
         } else {
             let by_chance = self.at.pdf(&self.scene.world.tables, self.lobes, arriving.direction);
-            power_heuristic(arriving.pdf * self.lights as f32, by_chance)
+            power_heuristic(arriving.pdf * number as f32, by_chance)
         };
         value * arriving.light * weight
     }
@@ -132,24 +132,30 @@ impl Scene<'_> {
         if far == 0.0 { 0.0 } else { far / (far + f32::from(u8::from(self.world.placed_emitters > 0))) }
     }
 
-    /// Draws light that may arrive; `None` if none can.
-    pub(crate) fn sample_light(&self, at: &Interaction, random: [f32; 3]) -> Option<Arriving> {
-        let [u, v, choice] = random;
+    /// Draws a light for each random number, with its probability; `None` where none can shine. The environment has the number behind
+    /// all emitters.
+    fn draw_lights<const N: usize>(&self, at: &Interaction, randoms: [f32; N]) -> [Option<(u32, f32)>; N] {
         let far = self.far_probability();
-        if choice < far {
-            let each = far / self.far_lights() as f32;
-            let number = ((choice / each) as u32).min(self.far_lights() - 1) + self.world.placed_emitters;
-            return match self.world.emitters.get(number as usize) {
-                Some(emitter) => self.light_of(at, emitter, each, [u, v]),
-                None => self.light_of_environment(at, each, [u, v]),
-            };
+        if far == 0.0 {
+            return sample_emitter_tree(&self.world.emitter_nodes, &lit(at), randoms);
         }
-        let rest = ((choice - far) / (1.0 - far)).min(1.0 - f32::EPSILON);
-        let (number, probability) = sample_emitter_tree(&self.world.emitter_nodes, &lit(at), rest)?;
-        self.light_of(at, &self.world.emitters[number as usize], probability * (1.0 - far), [u, v])
+        let each = far / self.far_lights() as f32;
+        randoms.map(|random| {
+            if random < far {
+                let number = ((random / each) as u32).min(self.far_lights() - 1);
+                return Some((number + self.world.placed_emitters, each));
+            }
+            let rest = ((random - far) / (1.0 - far)).min(1.0 - f32::EPSILON);
+            let placed = sample_emitter_tree(&self.world.emitter_nodes, &lit(at), [rest])[0];
+            placed.map(|(number, probability)| (number, probability * (1.0 - far)))
+        })
     }
 
-    fn light_of(&self, at: &Interaction, emitter: &Emitter, chance: f32, random: [f32; 2]) -> Option<Arriving> {
+    /// Light that may arrive from a light that was drawn; `None` if none can.
+    fn light_of(&self, at: &Interaction, number: u32, chance: f32, random: [f32; 2]) -> Option<Arriving> {
+        let Some(emitter) = self.world.emitters.get(number as usize) else {
+            return self.light_of_environment(at, chance, random);
+        };
         let sample = sample_emitter(emitter, at.point, random);
         let has_extent = matches!(emitter.kind, TRIANGLE_LIGHT | RECTANGLE_LIGHT | SPHERE_LIGHT);
         if sample.color == Vec3::ZERO || (has_extent && sample.pdf <= 0.0) {
@@ -201,7 +207,7 @@ impl Scene<'_> {
         (pdf > 0.0 && light != Vec3::ZERO).then_some(Arriving { direction, light, pdf, shadow })
     }
 
-    /// Radiance of the environment in a direction, and the density with which [`Scene::sample_light`] draws it.
+    /// Radiance of the environment in a direction, and the density with which [`Scene::draw_lights`] draws it.
     pub(crate) fn environment_light(&self, direction: Vec3) -> (Vec3, f32) {
         self.environment.as_ref().map_or((Vec3::ZERO, 0.0), |map| {
             let chance = self.far_probability() / self.far_lights() as f32;
@@ -209,7 +215,7 @@ impl Scene<'_> {
         })
     }
 
-    /// The density with which [`Scene::sample_light`], from one place, draws the direction in which another one shines.
+    /// The density with which [`Scene::draw_lights`], from one place, draws the direction in which another one shines.
     pub(crate) fn light_pdf(&self, from: &Interaction, light: &Interaction, direction: Vec3, distance: f32) -> f32 {
         if light.emitter == NONE {
             return 0.0;

@@ -234,12 +234,14 @@ impl Gathering<'_> {
         } else {
             1
         };
-        let direct = DirectLight { scene, at: &at, lobes, lights, before: walk.before.as_ref() };
-        let random = || {
-            let [u, v, choice, _] = randoms.next();
-            [u, v, choice]
+        let direct = DirectLight { scene, at: &at, lobes, before: walk.before.as_ref() };
+        let value = |direction| walk.value(scene, &at, direction);
+        let mut point = |_| randoms.next();
+        let direct = match lights {
+            GLOSSY_LIGHTS => direct.estimate::<{ GLOSSY_LIGHTS as usize }>(std::array::from_fn(point), counts, value),
+            FIRST_LIGHTS => direct.estimate::<{ FIRST_LIGHTS as usize }>(std::array::from_fn(point), counts, value),
+            _ => direct.estimate([point(0)], counts, value),
         };
-        let direct = direct.estimate(random, counts, |direction| walk.value(scene, &at, direction));
         sampled.radiance.add(vertex + 1, direct);
         if let Some(caustics) = caustics {
             let light = caustics.gather(&at, |direction| walk.value(scene, &at, direction));

@@ -35,10 +35,10 @@ pub(crate) fn trace_path(pass: &SamplePass<'_>, start: Start, counts: &mut Count
             let pdf = |from: &Interaction| scene.light_pdf(from, &at, ray.direction, hit.t);
             sum.add(vertex, throughput * at.emitted * Before::weight(before.as_ref(), pdf));
         }
-        let [u, v, choice, survival] = randoms.next();
+        let point = randoms.next();
         let value = |direction| at.scattered(tables, ALL_LOBES, direction, Transport::Radiance);
-        let direct = DirectLight { scene, at: &at, lobes: ALL_LOBES, lights: 1, before: before.as_ref() };
-        let direct = direct.estimate(|| [u, v, choice], counts, value);
+        let direct = DirectLight { scene, at: &at, lobes: ALL_LOBES, before: before.as_ref() };
+        let direct = direct.estimate([point], counts, value);
         sum.add(vertex + 1, throughput * direct);
         if let Some(caustics) = caustics {
             sum.add(vertex + 2, throughput * caustics.gather(&at, value));
@@ -47,7 +47,7 @@ pub(crate) fn trace_path(pass: &SamplePass<'_>, start: Start, counts: &mut Count
         throughput *= sample.weight;
         if vertex + 1 >= SURE_VERTICES {
             let survives = throughput.max_element().min(0.95);
-            if survival >= survives {
+            if point[3] >= survives {
                 break;
             }
             throughput /= survives;
