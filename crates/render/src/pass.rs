@@ -10,7 +10,9 @@ use crate::shade::Shader;
 use crate::stats::{Rays, TreeVisits};
 use lightcuts_kernel::camera::{THESIS_SIZE, camera_ray};
 use lightcuts_kernel::light::Vpl;
+use lightcuts_kernel::ray::Ray;
 use lightcuts_kernel::rng::random4;
+use lightcuts_world::bvh::LANES;
 
 impl Placement {
     /// `samples` camera rays are to place as many VPLs, on average, as the thesis' picture of one per pixel: VPLs are not
@@ -50,6 +52,7 @@ impl Pass<'_> {
             shader: Shader::new(self.view.world, tracer, self.lighting),
             tree: RayTree::new(self.view.max_depth),
             shifts: Vec::new(),
+            samples: Vec::new(),
             tree_hits: Vec::new(),
             result: TileResult {
                 tile: *tile,
@@ -62,10 +65,8 @@ impl Pass<'_> {
                 visits: TreeVisits::default(),
             },
         };
-        for (i, j) in tile.pixels() {
-            let seen = worker.render_pixel(i, j);
-            worker.result.seen.push(seen);
-        }
+        let pixels: Vec<(u32, u32)> = tile.pixels().collect();
+        pixels.chunks(LANES).for_each(|pixels| worker.render_pixels(pixels));
         TileResult { rays: worker.shader.rays, visits: worker.shader.visits, ..worker.result }
     }
 }
@@ -76,17 +77,54 @@ struct Worker<'a> {
     shader: Shader<'a>,
     tree: RayTree,
     shifts: Vec<[f32; 2]>,
+    samples: Vec<Sample>,
     tree_hits: Vec<TreeHit>,
     result: TileResult,
 }
 
+/// A camera ray that is to be traced.
+struct Sample {
+    /// Place of its pixel among those that are rendered together.
+    place: usize,
+    /// Number of the pixel, and of the ray in it.
+    number: (u32, u32),
+    shift: [f32; 2],
+    ray: Ray,
+}
+
 impl Worker<'_> {
-    fn render_pixel(&mut self, i: u32, j: u32) -> Seen {
-        let mut seen = Seen::default();
+    /// Renders neighbouring pixels: eight camera rays look together, and each goes on alone.
+    fn render_pixels(&mut self, pixels: &[(u32, u32)]) {
+        let view = &self.pass.view;
+        let mut seen = [Seen::default(); LANES];
+        self.samples.clear();
+        for (place, &(i, j)) in pixels.iter().enumerate() {
+            self.add_samples(place, i, j);
+        }
+        let samples = std::mem::take(&mut self.samples);
+        for group in samples.chunks(LANES) {
+            let rays: Vec<Ray> = group.iter().map(|sample| sample.ray).collect();
+            let firsts = self.shader.look(&rays);
+            for (sample, first) in group.iter().zip(firsts) {
+                let (i, j) = pixels[sample.place];
+                self.shader.place = sample.number;
+                self.shader.first = Some(first);
+                self.shader.selected.clear();
+                let color = self.tree.trace(&mut self.shader, sample.ray);
+                self.result.film.add(view.filter, i, j, sample.shift, color);
+                self.report(&mut seen[sample.place]);
+            }
+        }
+        self.samples = samples;
+        self.result.seen.extend(&seen[..pixels.len()]);
+    }
+
+    /// The camera rays of a pixel; none where the pass leaves it out.
+    fn add_samples(&mut self, place: usize, i: u32, j: u32) {
         let view = &self.pass.view;
         let pixel = j * view.camera.width + i;
         if self.pass.mask.is_some_and(|mask| !mask[pixel as usize]) {
-            return seen;
+            return;
         }
         match self.pass.shifts {
             Shifts::Sampler(sampler) => sampler.fill(pixel, &mut self.shifts),
@@ -95,16 +133,11 @@ impl Worker<'_> {
                 self.shifts.push(all[pixel as usize]);
             }
         }
-        for k in 0..self.shifts.len() {
-            let shift = self.shifts[k];
-            self.shader.place = (pixel, self.pass.first_sample + k as u32);
-            self.shader.selected.clear();
+        let first = self.pass.first_sample;
+        self.samples.extend((first..).zip(&self.shifts).map(|(number, &shift)| {
             let ray = camera_ray(&view.camera, i, j, shift, view.rules);
-            let color = self.tree.trace(&mut self.shader, ray);
-            self.result.film.add(view.filter, i, j, shift, color);
-            self.report(&mut seen);
-        }
-        seen
+            Sample { place, number: (pixel, number), shift, ray }
+        }));
     }
 
     /// Takes from the ray tree what the pass wants.

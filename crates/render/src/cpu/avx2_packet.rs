@@ -1,7 +1,7 @@
-//! Eight shadow rays from one point at a time. Twin of `lightcuts_world::bvh::any_hit` for each of them, same answers.
+//! Eight shadow rays at a time, from one point or from neighbours. Twin of `lightcuts_world::bvh::any_hit` for each of them, same answers.
 //!
 //! The thesis' rooms have few spheres and squares around a mesh. These are tested without their boxes, eight rays at once, with
-//! what depends on the point alone computed once for all its rays; a square is mostly told by its plane. What is left and meets
+//! what depends on where rays begin alone computed once for all rays from there; a square is mostly told by its plane. What is left and meets
 //! the box of the mesh goes down the hierarchy ray by ray: rays to VPLs soon go different ways, and eight boxes for one ray are
 //! quicker than eight rays for one box.
 
@@ -27,26 +27,42 @@ const FEW: usize = 16;
 /// Relative margin of comparisons that spare a division, far above its rounding error.
 const MARGIN: f32 = 1e-6;
 
-/// What of a few spheres and squares depends only on where rays begin: computed once for all rays of a point.
+/// What of a few spheres and squares depends only on where rays begin: computed once for all packets from there.
 pub(super) struct Source {
     /// Of each sphere the vector from its centre, and the square of its length less that of the radius.
-    spheres: [(Vec3, f32); FEW],
+    spheres: [(Wide3, __m256); FEW],
     /// Of each square how far its centre is along its normal.
-    heights: [f32; FEW],
+    heights: [__m256; FEW],
 }
 
 impl Source {
-    pub(super) fn new(geometry: &Geometry<'_>, origin: Vec3) -> Self {
-        let mut source = Self { spheres: [(Vec3::ZERO, 0.0); FEW], heights: [0.0; FEW] };
+    #[target_feature(enable = "avx2,fma,bmi1")]
+    pub(super) fn new(geometry: &Geometry<'_>, origin: Wide3) -> Self {
+        let zero = _mm256_setzero_ps();
+        let mut source = Self { spheres: [([zero; 3], zero); FEW], heights: [zero; FEW] };
         for (of, sphere) in source.spheres.iter_mut().zip(geometry.spheres) {
-            let offset = origin - sphere.center;
-            *of = (offset, offset.dot(offset) - sphere.radius * sphere.radius);
+            *of = sphere_from(sphere, origin);
         }
         for (height, square) in source.heights.iter_mut().zip(geometry.squares) {
-            *height = (square.center - origin).dot(square.normal);
+            *height = height_of(square, origin);
         }
         source
     }
+}
+
+/// The vectors from a sphere's centre, and the squares of their lengths less that of the radius.
+#[target_feature(enable = "avx2,fma,bmi1")]
+#[inline]
+fn sphere_from(sphere: &Sphere, origin: Wide3) -> (Wide3, __m256) {
+    let offset = sub(origin, splat3(sphere.center));
+    (offset, _mm256_sub_ps(dot(offset, offset), _mm256_set1_ps(sphere.radius * sphere.radius)))
+}
+
+/// How far a square's centre is along its normal.
+#[target_feature(enable = "avx2,fma,bmi1")]
+#[inline]
+fn height_of(square: &Square, origin: Wide3) -> __m256 {
+    dot(sub(splat3(square.center), origin), splat3(square.normal))
 }
 
 /// Eight rays that are not inside of anything.
@@ -58,8 +74,8 @@ pub(super) struct Packet {
     pub(super) t_max: __m256,
 }
 
-/// Which of the packet's rays in `asked` (a bit each) hit anything between their ends. `source` is given where all of them begin
-/// at its point.
+/// Which of the packet's rays in `asked` (a bit each) hit anything between their ends. `source` is given where several packets
+/// begin at the same places.
 #[target_feature(enable = "avx2,fma,bmi1")]
 pub(super) fn any_hits(tracer: &Tracer<'_>, packet: &Packet, source: Option<&Source>, asked: u32) -> u32 {
     let Tracer { geometry, rules, .. } = tracer;
@@ -69,17 +85,15 @@ pub(super) fn any_hits(tracer: &Tracer<'_>, packet: &Packet, source: Option<&Sou
     let mut open = asked;
     for (index, square) in geometry.squares.iter().enumerate() {
         let height = match source {
-            Some(source) => _mm256_set1_ps(source.heights[index % FEW]),
-            None => dot(sub(splat3(square.center), packet.origin), splat3(square.normal)),
+            Some(source) => source.heights[index % FEW],
+            None => height_of(square, packet.origin),
         };
         open &= !packet.hits_square(square, height);
     }
     for (index, sphere) in geometry.spheres.iter().enumerate() {
-        let (offset, c) = if let Some(source) = source {
-            (splat3(source.spheres[index % FEW].0), _mm256_set1_ps(source.spheres[index % FEW].1))
-        } else {
-            let offset = sub(packet.origin, splat3(sphere.center));
-            (offset, _mm256_sub_ps(dot(offset, offset), _mm256_set1_ps(sphere.radius * sphere.radius)))
+        let (offset, c) = match source {
+            Some(source) => source.spheres[index % FEW],
+            None => sphere_from(sphere, packet.origin),
         };
         open &= !packet.hits_sphere(sphere, offset, c, *rules);
     }

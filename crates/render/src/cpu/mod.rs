@@ -19,7 +19,7 @@ mod tracer;
 pub use device::{CpuDevice, processor_name};
 #[cfg(test)]
 pub(crate) use gather::relevant_lanes;
-pub(crate) use gather::{Candidates, Receiver, evaluate, select, select_exhaustively};
+pub(crate) use gather::{Candidates, Gathered, Receiver, evaluate, evaluate_together, select, select_exhaustively};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::Wide;
 pub(crate) use lanes::{Lanes, Plain};
