@@ -6,13 +6,17 @@ use crate::film::{Film, Tile};
 use crate::original::effective_probability;
 use crate::ray_tree::{RayTree, TreeHit};
 use crate::settings::VplPlacement;
-use crate::shade::Shader;
+use crate::shade::{First, Shader};
 use crate::stats::{Rays, TreeVisits};
 use lightcuts_kernel::camera::{THESIS_SIZE, camera_ray};
 use lightcuts_kernel::light::Vpl;
 use lightcuts_kernel::ray::Ray;
 use lightcuts_kernel::rng::random4;
 use lightcuts_world::bvh::LANES;
+
+/// Rows whose camera rays look together, and the width of their blocks of eight neighbours.
+const ROWS: u32 = 2;
+const BLOCK_WIDTH: u32 = LANES as u32 / ROWS;
 
 impl Placement {
     /// `samples` camera rays are to place as many VPLs, on average, as the thesis' picture of one per pixel: VPLs are not
@@ -66,7 +70,7 @@ impl Pass<'_> {
             },
         };
         let pixels: Vec<(u32, u32)> = tile.pixels().collect();
-        pixels.chunks(LANES).for_each(|pixels| worker.render_pixels(pixels));
+        pixels.chunks((tile.width * ROWS) as usize).for_each(|pixels| worker.render_rows(pixels));
         TileResult { rays: worker.shader.rays, visits: worker.shader.visits, ..worker.result }
     }
 }
@@ -84,7 +88,7 @@ struct Worker<'a> {
 
 /// A camera ray that is to be traced.
 struct Sample {
-    /// Place of its pixel among those that are rendered together.
+    /// Place of its pixel in its rows.
     place: usize,
     /// Number of the pixel, and of the ray in it.
     number: (u32, u32),
@@ -93,30 +97,36 @@ struct Sample {
 }
 
 impl Worker<'_> {
-    /// Renders neighbouring pixels: eight camera rays look together, and each goes on alone.
-    fn render_pixels(&mut self, pixels: &[(u32, u32)]) {
+    /// Renders a few rows of pixels: camera rays look together, eight neighbours at a time, and each goes on alone, in the order of
+    /// the pixels.
+    fn render_rows(&mut self, pixels: &[(u32, u32)]) {
         let view = &self.pass.view;
-        let mut seen = [Seen::default(); LANES];
+        let mut seen = vec![Seen::default(); pixels.len()];
         self.samples.clear();
         for (place, &(i, j)) in pixels.iter().enumerate() {
             self.add_samples(place, i, j);
         }
         let samples = std::mem::take(&mut self.samples);
-        for group in samples.chunks(LANES) {
-            let rays: Vec<Ray> = group.iter().map(|sample| sample.ray).collect();
-            let firsts = self.shader.look(&rays);
-            for (sample, first) in group.iter().zip(firsts) {
-                let (i, j) = pixels[sample.place];
-                self.shader.place = sample.number;
-                self.shader.first = Some(first);
-                self.shader.selected.clear();
-                let color = self.tree.trace(&mut self.shader, sample.ray);
-                self.result.film.add(view.filter, i, j, sample.shift, color);
-                self.report(&mut seen[sample.place]);
+        let mut order: Vec<usize> = (0..samples.len()).collect();
+        order.sort_by_key(|&k| pixels[samples[k].place].0 / BLOCK_WIDTH);
+        let mut firsts = vec![First::default(); samples.len()];
+        for group in order.chunks(LANES) {
+            let rays: Vec<Ray> = group.iter().map(|&k| samples[k].ray).collect();
+            for (&k, first) in group.iter().zip(self.shader.look(&rays)) {
+                firsts[k] = first;
             }
         }
+        for (sample, first) in samples.iter().zip(firsts) {
+            let (i, j) = pixels[sample.place];
+            self.shader.place = sample.number;
+            self.shader.first = Some(first);
+            self.shader.selected.clear();
+            let color = self.tree.trace(&mut self.shader, sample.ray);
+            self.result.film.add(view.filter, i, j, sample.shift, color);
+            self.report(&mut seen[sample.place]);
+        }
         self.samples = samples;
-        self.result.seen.extend(&seen[..pixels.len()]);
+        self.result.seen.extend(seen);
     }
 
     /// The camera rays of a pixel; none where the pass leaves it out.

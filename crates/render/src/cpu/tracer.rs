@@ -110,7 +110,7 @@ fn mesh_box(geometry: &Geometry<'_>) -> (Vec3, Vec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cpu::{Candidates, Receiver, evaluate};
+    use crate::cpu::{Candidates, Receiver, evaluate, evaluate_together, select};
     use crate::light_tree::tests::scattered;
     use crate::light_tree::{LightTree, TreeLayout};
     use lightcuts_import::{ImportOptions, load};
@@ -241,6 +241,49 @@ mod tests {
                 lit += u32::from(plain.color != Vec3::ZERO);
             }
             assert!(lit > 300, "{scene}: {lit}");
+        }
+    }
+
+    #[test]
+    fn points_gather_together_what_each_gathers() {
+        let tree = LightTree::build(&scattered(203), TreeLayout::Wide);
+        for scene in ["thesis/simple.txt", "thesis/ship.txt", "gallery/cubes.txt"] {
+            let world = world(scene);
+            let mut chosen = 0;
+            for k in 0..200 {
+                let tracer = Tracer::new(world.shapes.geometry(), RULES[(k % 2) as usize], Simd::Auto);
+                let [a, b, c, _] = random4(k, 2, 0, 17);
+                let spread = if k % 3 == 0 { 300.0 } else { 4.0 };
+                let receivers: [Receiver; LANES] = std::array::from_fn(|lane| {
+                    let [d, e, f, _] = random4(k, 8 + lane as u32, 0, 17);
+                    Receiver {
+                        point: (Vec3::new(a, b, c) - 0.5) * 390.0 + (Vec3::new(d, e, f) - 0.5) * spread,
+                        normal: (ray(k).direction + Vec3::new(d, e, f) * 0.2).normalize(),
+                        diffuse: Vec3::new(0.5, d, 0.9),
+                        epsilon: 0.01 + e * 0.01,
+                    }
+                });
+                for threshold in [None, Some(2e-6), Some(1e-4)] {
+                    let mut lists: [Vec<Candidates>; LANES] = Default::default();
+                    for (list, at) in lists.iter_mut().zip(&receivers) {
+                        if let Some(threshold) = threshold {
+                            select(&tree, tracer.avx2, at.point, threshold, list);
+                        } else {
+                            list.extend(tree.every_block(true));
+                        }
+                    }
+                    let count = 2 + (k % 7) as usize;
+                    let lists = lists.each_ref().map(|list| &list[..]);
+                    let blocks = &tree.blocks;
+                    let together = evaluate_together(&tracer, blocks, &lists[..count], threshold, &receivers[..count]);
+                    for lane in 0..count {
+                        let alone = evaluate(&tracer, blocks, lists[lane], threshold, &receivers[lane]);
+                        assert_eq!(together[lane], alone, "{scene}, bundle {k}, {threshold:?}, point {lane}");
+                        chosen += alone.chosen;
+                    }
+                }
+            }
+            assert!(chosen > 10_000, "{scene}: {chosen}");
         }
     }
 }
