@@ -107,7 +107,10 @@ impl<'a> Shader<'a> {
         for ((ray, hit), first) in rays.iter().zip(hits).zip(&mut firsts) {
             first.found = self.found(ray, hit);
         }
-        if let Lighting::Vpls(vpls) = self.lighting {
+        // Among few spheres and squares alone eight VPLs for one point are quicker: what they share is not the way down a hierarchy.
+        if let Lighting::Vpls(vpls) = self.lighting
+            && !self.tracer.geometry.triangles.is_empty()
+        {
             self.gather_together(&vpls, &mut firsts);
         }
         firsts
