@@ -1,9 +1,10 @@
-//! Eight shadow rays at a time, from one point or from neighbours. Twin of `lightcuts_world::bvh::any_hit` for each of them, same answers.
+//! Eight shadow rays at a time, from one point or from neighbours. Twin of `lightcuts_world::bvh::any_hit` for each of them,
+//! same answers.
 //!
 //! The thesis' rooms have few spheres and squares around a mesh. These are tested without their boxes, eight rays at once, with
-//! what depends on where rays begin alone computed once for all rays from there; a square is mostly told by its plane. What is left and meets
-//! the box of the mesh goes down the hierarchy ray by ray: rays to VPLs soon go different ways, and eight boxes for one ray are
-//! quicker than eight rays for one box.
+//! what depends on where rays begin alone computed once for all rays from there; a square is mostly told by its plane. What is
+//! left and meets the box of the mesh goes down the hierarchy as a bundle if all rays' directions have the same signs, as those of
+//! neighbours to one light mostly do, else ray by ray.
 
 #![allow(unsafe_code)]
 
