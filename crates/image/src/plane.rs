@@ -23,7 +23,10 @@ impl<T: Copy> Plane<T> {
 
     /// A picture whose pixel (x, y) is `pixel(x, y)`, evaluated row by row from the top.
     pub fn from_fn(width: usize, height: usize, mut pixel: impl FnMut(usize, usize) -> T) -> Self {
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
+        let mut pixels = Vec::with_capacity(width * height);
+        for y in 0..height {
+            pixels.extend((0..width).map(|x| pixel(x, y)));
+        }
         Self { width, height, pixels }
     }
 

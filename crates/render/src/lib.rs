@@ -78,5 +78,6 @@ pub fn render_on(
 ) -> Result<Rendering, SettingsError> {
     settings.validate()?;
     settings.require_model(Model::Thesis)?;
-    Ok(job::Job::new(world, settings, options, stations, monitor).run())
+    // On a thread of the pool: from another one each of many small steps would be handed over and waited for.
+    Ok(rayon::scope(|_| job::Job::new(world, settings, options, stations, monitor).run()))
 }

@@ -2,12 +2,15 @@
 
 use crate::Vpl;
 use crate::device::{Lighting, Placement, Shifts, Tile, Wants};
-use crate::job::{Job, TILE_SIZE};
+use crate::job::Job;
 use crate::monitor::Stage;
 use crate::original::OriginalDraws;
 use crate::ray_tree::TreeHit;
 use crate::settings::Strategy;
 use crate::stations::Station;
+
+/// Pixels of a row that are traced in one go: many enough to be worth handing over, few enough to keep all cores busy.
+const PIECE: u32 = 64;
 
 impl Job<'_> {
     /// The first pass with the original's draws.
@@ -42,13 +45,13 @@ impl Job<'_> {
         let placement = self.original_placement();
         let mut shifts = vec![[0.0; 2]; (width * height) as usize];
         let mut vpls = Vec::new();
-        self.monitor.begin(Stage::FirstPass, u64::from(height * width.div_ceil(TILE_SIZE)));
+        self.monitor.begin(Stage::FirstPass, u64::from(height * width.div_ceil(PIECE)));
         for j in 0..height {
             let start = (j * width) as usize;
             shifts[start..start + width as usize].copy_from_slice(&draws.row(width));
             let tiles: Vec<Tile> = (0..width)
-                .step_by(TILE_SIZE as usize)
-                .map(|i| Tile { i, j, width: TILE_SIZE.min(width - i), height: 1 })
+                .step_by(PIECE as usize)
+                .map(|i| Tile { i, j, width: PIECE.min(width - i), height: 1 })
                 .collect();
             let pass = self.pass(lighting, Shifts::Given(&shifts), Wants::SurfacesAndHits);
             let complete = self.merge_tiles(Station::Place, &pass, &tiles, |canvas, result| {

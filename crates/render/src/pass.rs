@@ -1,12 +1,12 @@
 //! One tile of a pass over the picture on the CPU: camera rays of every pixel.
 
-use crate::cpu::Tracer;
+use crate::cpu::{Tracer, Walls};
 use crate::device::{Pass, Placement, Seen, Shifts, TileResult, Wants};
 use crate::film::{Film, Tile};
 use crate::original::effective_probability;
 use crate::ray_tree::{RayTree, TreeHit};
 use crate::settings::VplPlacement;
-use crate::shade::{First, Shader};
+use crate::shade::{First, Found, Shader};
 use crate::stats::{Rays, TreeVisits};
 use lightcuts_kernel::camera::{THESIS_SIZE, camera_ray};
 use lightcuts_kernel::light::Vpl;
@@ -50,10 +50,10 @@ impl Placement {
 
 impl Pass<'_> {
     /// Renders one tile.
-    pub(crate) fn render_tile(&self, tracer: Tracer<'_>, tile: &Tile) -> TileResult {
+    pub(crate) fn render_tile(&self, tracer: Tracer<'_>, walls: &Walls, tile: &Tile) -> TileResult {
         let mut worker = Worker {
             pass: self,
-            shader: Shader::new(self.view.world, tracer, self.lighting),
+            shader: Shader::new(self.view.world, tracer, self.lighting, walls),
             tree: RayTree::new(self.view.max_depth),
             shifts: Vec::new(),
             samples: Vec::new(),
@@ -97,16 +97,31 @@ struct Sample {
 }
 
 impl Worker<'_> {
-    /// Renders a few rows of pixels: camera rays look together, eight neighbours at a time, and each goes on alone, in the order of
-    /// the pixels.
+    /// Renders a few rows of pixels in their order.
     fn render_rows(&mut self, pixels: &[(u32, u32)]) {
         let view = &self.pass.view;
-        let mut seen = vec![Seen::default(); pixels.len()];
         self.samples.clear();
         for (place, &(i, j)) in pixels.iter().enumerate() {
             self.add_samples(place, i, j);
         }
+        let first_seen = self.result.seen.len();
+        self.result.seen.resize(first_seen + pixels.len(), Seen::default());
         let samples = std::mem::take(&mut self.samples);
+        let firsts = if self.shader.looks_together() { self.look_together(pixels, &samples) } else { Vec::new() };
+        for (k, sample) in samples.iter().enumerate() {
+            let (i, j) = pixels[sample.place];
+            self.shader.place = sample.number;
+            self.shader.first = firsts.get(k).copied();
+            self.shader.selected.clear();
+            let color = self.tree.trace(&mut self.shader, sample.ray);
+            self.result.film.add(view.filter, i, j, sample.shift, color);
+            self.report(first_seen + sample.place);
+        }
+        self.samples = samples;
+    }
+
+    /// What the camera rays find, eight neighbours at a time.
+    fn look_together(&mut self, pixels: &[(u32, u32)], samples: &[Sample]) -> Vec<First> {
         let mut order: Vec<usize> = (0..samples.len()).collect();
         order.sort_by_key(|&k| pixels[samples[k].place].0 / BLOCK_WIDTH);
         let mut firsts = vec![First::default(); samples.len()];
@@ -116,17 +131,7 @@ impl Worker<'_> {
                 firsts[k] = first;
             }
         }
-        for (sample, first) in samples.iter().zip(firsts) {
-            let (i, j) = pixels[sample.place];
-            self.shader.place = sample.number;
-            self.shader.first = Some(first);
-            self.shader.selected.clear();
-            let color = self.tree.trace(&mut self.shader, sample.ray);
-            self.result.film.add(view.filter, i, j, sample.shift, color);
-            self.report(&mut seen[sample.place]);
-        }
-        self.samples = samples;
-        self.result.seen.extend(seen);
+        firsts
     }
 
     /// The camera rays of a pixel; none where the pass leaves it out.
@@ -150,22 +155,23 @@ impl Worker<'_> {
         }));
     }
 
-    /// Takes from the ray tree what the pass wants.
-    fn report(&mut self, seen: &mut Seen) {
+    /// Takes from the ray tree what the pass wants, for the pixel that is seen at a place.
+    fn report(&mut self, pixel: usize) {
+        let seen = &mut self.result.seen[pixel];
         match self.pass.wants {
             Wants::Colors => {}
-            Wants::SelectedSums => self.sum_selected(seen),
+            Wants::SelectedSums => sum_selected(seen, &self.shader.selected),
             Wants::Selections => {
-                self.sum_selected(seen);
+                sum_selected(seen, &self.shader.selected);
                 self.result.selections.extend(&self.shader.selected);
             }
             Wants::SurfacesAndHits => {
-                self.see(seen);
+                see(seen, self.tree.first_found());
                 self.tree.hits(&mut self.tree_hits);
                 self.result.hits.extend(&self.tree_hits);
             }
             Wants::SurfacesAndVpls(placement) => {
-                self.see(seen);
+                see(seen, self.tree.first_found());
                 if let Some(placement) = placement {
                     let (pixel, sample) = self.shader.place;
                     self.tree.hits(&mut self.tree_hits);
@@ -175,22 +181,22 @@ impl Worker<'_> {
             }
         }
     }
+}
 
-    fn sum_selected(&self, seen: &mut Seen) {
-        seen.selected += self.shader.selected.iter().map(|&n| u64::from(n)).sum::<u64>();
-        seen.shaded += self.shader.selected.len() as u64;
-    }
+fn sum_selected(seen: &mut Seen, selected: &[u32]) {
+    seen.selected += selected.iter().map(|&n| u64::from(n)).sum::<u64>();
+    seen.shaded += selected.len() as u64;
+}
 
-    fn see(&self, seen: &mut Seen) {
-        seen.samples += 1;
-        if let Some(found) = self.tree.first_found() {
-            if seen.hits == 0 {
-                seen.object = found.surface.object;
-            }
-            seen.hits += 1;
-            seen.albedo += found.material.diffuse;
-            seen.normal += found.surface.normal;
-            seen.depth += found.hit.t;
+fn see(seen: &mut Seen, found: Option<&Found>) {
+    seen.samples += 1;
+    if let Some(found) = found {
+        if seen.hits == 0 {
+            seen.object = found.surface.object;
         }
+        seen.hits += 1;
+        seen.albedo += found.material.diffuse;
+        seen.normal += found.surface.normal;
+        seen.depth += found.hit.t;
     }
 }

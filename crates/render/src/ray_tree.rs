@@ -60,7 +60,7 @@ impl RayTree {
             self.spawn(shader, k);
         }
         self.sum();
-        self.slots[0].map_or(Vec3::ZERO, |root| root.color)
+        self.slots[0].as_ref().map_or(Vec3::ZERO, |root| root.color)
     }
 
     /// Finds what a ray hits and its local colour.
@@ -79,8 +79,14 @@ impl RayTree {
 
     /// Traces the children of a slot.
     fn spawn(&mut self, shader: &mut Shader<'_>, k: u32) {
-        let Some(Slot { ray, found: Some(found), reflection, refraction, .. }) = self.slots[k as usize] else { return };
-        let Found { surface, material, epsilon, .. } = found;
+        let Some(Slot { ray, found: Some(found), reflection, refraction, .. }) = &self.slots[k as usize] else {
+            return;
+        };
+        let (reflection, refraction) = (*reflection, *refraction);
+        if reflection <= 0.0 && refraction <= 0.0 {
+            return;
+        }
+        let (ray, Found { surface, material, epsilon, .. }) = (*ray, *found);
         let child = |direction: Vec3, inside: bool| Ray {
             origin: surface.point,
             direction,
@@ -108,18 +114,18 @@ impl RayTree {
     /// Adds the children's colours to their parents', from the deepest up; each ray's colour is at most 1.
     fn sum(&mut self) {
         for &k in self.active.iter().rev() {
-            let Some(mut slot) = self.slots[k as usize] else { continue };
+            let Some(slot) = &self.slots[k as usize] else { continue };
+            let (mut color, found_any) = (slot.color, slot.found.is_some());
             for (factor, child) in [(slot.reflection, 2 * k + 1), (slot.refraction, 2 * k + 2)] {
                 if factor > 0.0
-                    && let Some(child) = self.slots[child as usize]
+                    && let Some(child) = &self.slots[child as usize]
                 {
-                    slot.color += child.color * factor;
+                    color += child.color * factor;
                 }
             }
-            if slot.found.is_some() {
-                slot.color = slot.color.min(Vec3::ONE);
+            if let Some(slot) = &mut self.slots[k as usize] {
+                slot.color = if found_any { color.min(Vec3::ONE) } else { color };
             }
-            self.slots[k as usize] = Some(slot);
         }
     }
 
@@ -128,15 +134,15 @@ impl RayTree {
         hits.clear();
         self.active.sort_unstable_by_key(|&k| self.rank[k as usize]);
         for &k in &self.active {
-            if let Some(Slot { found: Some(Found { surface, epsilon, .. }), color, .. }) = self.slots[k as usize] {
-                hits.push(TreeHit { slot: k, surface, color, epsilon });
+            if let Some(Slot { found: Some(Found { surface, epsilon, .. }), color, .. }) = &self.slots[k as usize] {
+                hits.push(TreeHit { slot: k, surface: *surface, color: *color, epsilon: *epsilon });
             }
         }
     }
 
     /// What the camera ray of the last tree hit, at which distance.
-    pub(crate) fn first_found(&self) -> Option<Found> {
-        self.slots[0].and_then(|slot| slot.found)
+    pub(crate) fn first_found(&self) -> Option<&Found> {
+        self.slots[0].as_ref().and_then(|slot| slot.found.as_ref())
     }
 }
 

@@ -1,6 +1,8 @@
 //! Light at a hit: the scene's lights in the first pass, VPLs in the second.
 
-use crate::cpu::{Candidates, Gathered, Receiver, Tracer, evaluate, evaluate_together, select, select_exhaustively};
+use crate::cpu::{
+    Blocks, Candidates, Gathered, Receiver, Tracer, Walls, evaluate, evaluate_together, select, select_exhaustively,
+};
 use crate::device::{Lighting, VplLighting};
 use crate::settings::Strategy;
 use crate::stats::{Rays, TreeVisits};
@@ -37,6 +39,7 @@ pub(crate) struct Shader<'a> {
     world: &'a World,
     tracer: Tracer<'a>,
     lighting: Lighting<'a>,
+    walls: &'a Walls,
     /// Place of the camera ray in the run, for random numbers: pixel and sample.
     pub(crate) place: (u32, u32),
     pub(crate) rays: Rays,
@@ -52,7 +55,7 @@ pub(crate) struct Shader<'a> {
 }
 
 impl<'a> Shader<'a> {
-    pub(crate) fn new(world: &'a World, tracer: Tracer<'a>, lighting: Lighting<'a>) -> Self {
+    pub(crate) fn new(world: &'a World, tracer: Tracer<'a>, lighting: Lighting<'a>, walls: &'a Walls) -> Self {
         let candidates = match lighting {
             Lighting::Vpls(VplLighting { tree, strategy: Strategy::All, .. }) => tree.every_block(true).collect(),
             _ => Vec::new(),
@@ -61,6 +64,7 @@ impl<'a> Shader<'a> {
             world,
             tracer,
             lighting,
+            walls,
             place: (0, 0),
             rays: Rays::default(),
             visits: TreeVisits::default(),
@@ -100,6 +104,12 @@ impl<'a> Shader<'a> {
         })
     }
 
+    /// Whether neighbouring camera rays are to look together. Among few spheres and squares alone they have no way down a
+    /// hierarchy to share, and looking one by one is no slower.
+    pub(crate) fn looks_together(&self) -> bool {
+        !self.tracer.geometry.triangles.is_empty()
+    }
+
     /// What up to eight neighbouring camera rays find, and the VPLs' light there.
     pub(crate) fn look(&mut self, rays: &[Ray]) -> [First; LANES] {
         let hits = self.tracer.closest8(&std::array::from_fn(|k| rays[k.min(rays.len() - 1)]));
@@ -107,10 +117,7 @@ impl<'a> Shader<'a> {
         for ((ray, hit), first) in rays.iter().zip(hits).zip(&mut firsts) {
             first.found = self.found(ray, hit);
         }
-        // Among few spheres and squares alone eight VPLs for one point are quicker: what they share is not the way down a hierarchy.
-        if let Lighting::Vpls(vpls) = self.lighting
-            && !self.tracer.geometry.triangles.is_empty()
-        {
+        if let Lighting::Vpls(vpls) = self.lighting {
             self.gather_together(&vpls, &mut firsts);
         }
         firsts
@@ -133,7 +140,7 @@ impl<'a> Shader<'a> {
             _ => &self.candidates_together[if k == 0 { 0 } else { ends[k - 1] }..ends[k]],
         };
         let lists: Vec<&[Candidates]> = (0..places.len()).map(list).collect();
-        let gathered = evaluate_together(&self.tracer, &vpls.tree.blocks, &lists, threshold(vpls), &receivers);
+        let gathered = evaluate_together(&self.tracer, &blocks(vpls, self.walls), &lists, threshold(vpls), &receivers);
         for ((place, gathered), visits) in places.into_iter().zip(gathered).zip(all_visits) {
             firsts[place].gathered = Some((gathered, visits));
         }
@@ -192,7 +199,7 @@ impl<'a> Shader<'a> {
             }
             let visits = choose(vpls, &self.tracer, surface.point, &mut self.candidates);
             let receiver = receiver(found);
-            (evaluate(&self.tracer, &vpls.tree.blocks, &self.candidates, threshold(vpls), &receiver), visits)
+            (evaluate(&self.tracer, &blocks(vpls, self.walls), &self.candidates, threshold(vpls), &receiver), visits)
         });
         self.visits.add(&TreeVisits { shaded_hits: 1, selected: u64::from(gathered.chosen), ..visits });
         self.selected.push(gathered.chosen);
@@ -204,6 +211,10 @@ impl<'a> Shader<'a> {
 
 fn receiver(Found { surface, material, epsilon, .. }: &Found) -> Receiver {
     Receiver { point: surface.point, normal: surface.normal, diffuse: material.diffuse, epsilon: *epsilon }
+}
+
+fn blocks<'a>(vpls: &VplLighting<'a>, walls: &'a Walls) -> Blocks<'a> {
+    Blocks { vpls: &vpls.tree.blocks, walls }
 }
 
 /// The relevance that a VPL must reach; `None` where all count.

@@ -6,9 +6,10 @@
 
 #![allow(unsafe_code)]
 
-use super::avx2_packet::{Packet, meet, safe_reciprocal};
+use super::avx2_packet::{Packet, meet};
 use super::avx2_trace::{
-    Stack, Wide3, any_hit, block, closest_hit, cross_triangles, lanes, load, nearer_hit, other_hit, splat3, store,
+    Stack, Wide3, WideRay, any_hit, block, closest_hit, cross_triangles, lanes, load, nearer_hit, other_hit, splat3,
+    store,
 };
 use super::tracer::Tracer;
 use glam::Vec3;
@@ -52,13 +53,11 @@ struct Nearest {
 
 impl<'a> Bundle<'a> {
     /// `None` if the rays in `asked`, a bit each, go different ways, or if there are none.
-    #[target_feature(enable = "avx2,fma,bmi1")]
-    pub(super) fn new(packet: &'a Packet, asked: u32) -> Option<Self> {
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    pub(super) fn new(packet: &'a Packet, reciprocal: Wide3, asked: u32) -> Option<Self> {
         if asked == 0 {
             return None;
         }
-        let [x, y, z] = packet.direction;
-        let reciprocal = [safe_reciprocal(x), safe_reciprocal(y), safe_reciprocal(z)];
         let mut backwards = [0; 3];
         for axis in 0..3 {
             let signs = _mm256_movemask_ps(reciprocal[axis]) as u32 & asked;
@@ -81,7 +80,7 @@ impl<'a> Bundle<'a> {
     }
 
     /// Children that any of the rays may cross before `limit`, and the earliest that one may enter them.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn enter(&self, node: &BvhNode, limit: __m256) -> (u32, __m256) {
         let (mut entry, mut exit) = (self.t_min, limit);
@@ -97,7 +96,7 @@ impl<'a> Bundle<'a> {
     }
 
     /// Rays that cross a child's box before `limit`.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn meet(&self, node: &BvhNode, lane: usize, limit: __m256) -> u32 {
         let (lower, upper) = node.child_box(lane);
@@ -105,7 +104,7 @@ impl<'a> Bundle<'a> {
     }
 
     /// The triangle of a lane: rays that hit it, with t, u and v; the arithmetic of `intersect_triangle`.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn intersect(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
         let at = |of: &[[f32; LANES]; 3]| splat3(Vec3::new(of[0][lane], of[1][lane], of[2][lane]));
@@ -115,7 +114,7 @@ impl<'a> Bundle<'a> {
     }
 
     /// Which of the rays in `asked` hit a triangle.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     pub(super) fn any_hits(&self, geometry: &Geometry<'_>, rules: Rules, asked: u32) -> u32 {
         let limit = range(self.packet.t_max, asked).1;
         let least = min_determinant(rules);
@@ -126,8 +125,7 @@ impl<'a> Bundle<'a> {
         while let Some((index, entering)) = next {
             let active = entering & open;
             if active.count_ones() <= ALONE {
-                let rays = self.packet.rays();
-                let is_hit = |&lane: &usize| any_hit::<false>(geometry, &rays[lane], rules, index);
+                let is_hit = |&lane: &usize| any_hit::<false>(geometry, &self.packet.ray(lane), rules, index);
                 open &= !lanes(active).filter(is_hit).fold(0, |hits, lane| hits | 1 << lane);
             } else {
                 let node = &geometry.nodes[index as usize];
@@ -138,7 +136,15 @@ impl<'a> Bundle<'a> {
                         continue;
                     }
                     let block = block(geometry, node, lane);
-                    for lane in (0..LANES).take_while(|&lane| block.primitive[lane] != NONE) {
+                    // Each ray with all triangles or each triangle with all rays, whichever is less often.
+                    let count = block.primitive.iter().filter(|&&primitive| primitive != NONE).count();
+                    if (active.count_ones() as usize) < count {
+                        let is_hit =
+                            |&lane: &usize| WideRay::new(&self.packet.ray(lane)).intersect(block, least).0 != 0;
+                        open &= !lanes(active).filter(is_hit).fold(0, |hits, lane| hits | 1 << lane);
+                        continue;
+                    }
+                    for lane in 0..count {
                         if active == 0 {
                             break;
                         }
@@ -154,7 +160,7 @@ impl<'a> Bundle<'a> {
     }
 
     /// The nearest hits of all eight rays, which are `rays`.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     pub(super) fn closest_hits(&self, geometry: &Geometry<'_>, rules: Rules, rays: &[Ray; LANES]) -> [Hit; LANES] {
         let zero = _mm256_setzero_ps();
         let none = _mm256_set1_epi32(NONE as i32);
@@ -196,7 +202,7 @@ impl<'a> Bundle<'a> {
     }
 
     /// Takes the hits of a leaf that are nearer.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn meet_leaf(&self, geometry: &Geometry<'_>, rules: Rules, rays: &[Ray; LANES], leaf: u32, best: &mut Nearest) {
         let zero = _mm256_setzero_ps();
@@ -226,7 +232,7 @@ impl<'a> Bundle<'a> {
 
 impl Nearest {
     /// Twin of `Hit::take_nearer` in the lanes of `hit`.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn take_nearer(&mut self, hit: __m256, [t, u, v]: [__m256; 3], primitive: u32) {
         // A hit lies before the ray's end, so that the number of no primitive, negative here, is never compared.
@@ -241,14 +247,14 @@ impl Nearest {
         self.primitive = _mm256_castps_si256(number);
     }
 
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     fn new(hits: &[Hit; LANES]) -> Self {
         let primitive = load(&hits.map(|hit| f32::from_bits(hit.primitive)));
         let [t, u, v] = [load(&hits.map(|hit| hit.t)), load(&hits.map(|hit| hit.u)), load(&hits.map(|hit| hit.v))];
         Self { t, primitive: _mm256_castps_si256(primitive), u, v }
     }
 
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     fn hits(&self) -> [Hit; LANES] {
         let (t, u, v) = (store(self.t), store(self.u), store(self.v));
         let primitive = store(_mm256_castsi256_ps(self.primitive)).map(f32::to_bits);
@@ -257,16 +263,17 @@ impl Nearest {
 }
 
 /// Twin of `Tracer::closest8`.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn closest_hits(tracer: &Tracer<'_>, rays: &[Ray; LANES]) -> [Hit; LANES] {
-    match Bundle::new(&Packet::new(rays), ALL) {
+    let packet = Packet::new(rays);
+    match Bundle::new(&packet, packet.reciprocal(), ALL) {
         Some(bundle) => bundle.closest_hits(&tracer.geometry, tracer.rules, rays),
         None => rays.map(|ray| closest_hit(&tracer.geometry, &ray, tracer.rules)),
     }
 }
 
 /// Least and greatest value of some lanes, each in all lanes; `asked` has a bit for each. What is no number does not count.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn range(values: __m256, asked: u32) -> (__m256, __m256) {
     let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);

@@ -2,9 +2,9 @@
 
 #![allow(unsafe_code)]
 
-use super::avx2_packet::{Packet, Source, any_hits};
-use super::avx2_trace::{Wide3, dot, load, load3, splat3, store, sub};
-use super::gather::{Candidates, Decisions, Gathered, Receiver};
+use super::avx2_shadows::{MOST, Shadow, Source};
+use super::avx2_trace::{Stack, Wide3, dot, load, load3, splat3, store, sub};
+use super::gather::{Blocks, Candidates, Decisions, Gathered, Receiver};
 use super::tracer::Tracer;
 use crate::light_node::{LANES, LightNode, VplBlock};
 use glam::Vec3;
@@ -19,7 +19,7 @@ use std::arch::x86_64::{
 };
 
 /// The ends of shadow rays; twin of `kernel::ray::shadow_ray`.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 fn shadow_ends(rules: Rules, to_light: Wide3, epsilon: __m256) -> (__m256, __m256) {
     let one = _mm256_set1_ps(1.0);
     match rules {
@@ -33,7 +33,7 @@ fn shadow_ends(rules: Rules, to_light: Wide3, epsilon: __m256) -> (__m256, __m25
 }
 
 /// All bits of the lanes that are set in a mask.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 fn spread(mask: u32) -> __m256 {
     let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
     let chosen = _mm256_and_si256(_mm256_set1_epi32(mask as i32), bits);
@@ -41,7 +41,7 @@ fn spread(mask: u32) -> __m256 {
 }
 
 /// Decides for every cluster of a node; twin of `kernel::light_tree::decide`, same bits.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decisions {
     let zero = _mm256_setzero_ps();
     let sign_bit = _mm256_set1_ps(-0.0);
@@ -79,7 +79,7 @@ pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decis
 }
 
 /// Lanes whose relevance reaches the threshold; twin of `kernel::light_tree::is_relevant`.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 fn relevant(intensity: __m256, cos_phi: __m256, dist_sq: __m256, threshold: f32) -> u32 {
     // With NaN in the first place the maximum is its second operand, as in the plain version.
     let flux = _mm256_mul_ps(_mm256_max_ps(cos_phi, _mm256_setzero_ps()), intensity);
@@ -87,11 +87,61 @@ fn relevant(intensity: __m256, cos_phi: __m256, dist_sq: __m256, threshold: f32)
     _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(flux, needed)) as u32
 }
 
+/// How VPLs would light points: eight of a block one point, or one of them eight points.
+#[derive(Clone, Copy)]
+struct Incidence {
+    cos_theta: __m256,
+    cos_phi: __m256,
+    block: u32,
+    /// Of the block, where it is one VPL.
+    lane: usize,
+    /// Lanes with shadow rays, a bit each.
+    facing: u32,
+}
+
+/// What is still to be traced. First the cosines of many, then their shadow rays, then their light: while a processor waits for one
+/// root and quotient it can begin with the next few, as long as little else lies between them.
+struct Batch(Stack<Incidence, MOST>);
+
+impl Batch {
+    /// Takes an incidence if there are rays to trace; says whether there is no more room.
+    #[inline]
+    fn push(&mut self, incidence: Incidence) -> bool {
+        self.0.push_if(incidence, incidence.facing != 0);
+        self.0.size == MOST
+    }
+
+    /// Traces what was taken: `aim` makes the rays, without their sides and which are asked for; `light` is told which lanes see
+    /// their VPL, as a mask.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn trace(
+        &mut self,
+        (tracer, source, blocks): (&Tracer<'_>, &Source, &Blocks<'_>),
+        epsilon: __m256,
+        aim: impl Fn(&Incidence) -> Wide3,
+        mut light: impl FnMut(&Incidence, __m256),
+    ) {
+        let mut shadows = Stack::<Shadow, MOST>::new();
+        for incidence in self.0.as_slice() {
+            let direction = aim(incidence);
+            let (t_min, t_max) = shadow_ends(tracer.rules, direction, epsilon);
+            let ends = blocks.walls.of_block(incidence.block);
+            shadows.push(Shadow { direction, t_min, t_max, ends, open: incidence.facing });
+        }
+        source.trace(tracer, shadows.as_mut_slice());
+        for (incidence, shadow) in self.0.as_slice().iter().zip(shadows.as_slice()) {
+            light(incidence, spread(shadow.open));
+        }
+        self.0.size = 0;
+    }
+}
+
 /// What the chosen VPLs add; twin of `vpl_incidence` and `phong_vpl`.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn evaluate(
     tracer: &Tracer<'_>,
-    blocks: &[VplBlock],
+    blocks: &Blocks<'_>,
     candidates: &[Candidates],
     threshold: Option<f32>,
     at: &Receiver,
@@ -99,11 +149,25 @@ pub(super) fn evaluate(
     let zero = _mm256_setzero_ps();
     let one = _mm256_set1_ps(1.0);
     let (point, normal, diffuse) = (splat3(at.point), splat3(at.normal), splat3(at.diffuse));
-    let source = Source::new(&tracer.geometry, point);
+    let source = Source::new(&tracer.geometry, blocks.walls, point);
+    let mut batch = Batch(Stack::new());
     let mut sums = [zero; 3];
     let mut gathered = Gathered { color: Vec3::ZERO, chosen: 0, shadow_rays: 0 };
+    let mut trace = |batch: &mut Batch| {
+        let aim = |incidence: &Incidence| sub(load3(&blocks.vpls[incidence.block as usize].position), point);
+        batch.trace((tracer, &source, blocks), _mm256_set1_ps(at.epsilon), aim, |incidence, visible| {
+            let block = &blocks.vpls[incidence.block as usize];
+            let emission = _mm256_mul_ps(load(&block.attenuation), incidence.cos_phi);
+            let colors = load3(&block.diffuse);
+            for channel in 0..3 {
+                let reflected = _mm256_mul_ps(_mm256_mul_ps(colors[channel], diffuse[channel]), incidence.cos_theta);
+                let color = _mm256_min_ps(_mm256_mul_ps(reflected, emission), one);
+                sums[channel] = _mm256_add_ps(sums[channel], _mm256_and_ps(color, visible));
+            }
+        });
+    };
     for candidates in candidates {
-        let block = &blocks[candidates.block as usize];
+        let block = &blocks.vpls[candidates.block as usize];
         let to_light = sub(load3(&block.position), point);
         let dist_sq = dot(to_light, to_light);
         let reciprocal = _mm256_div_ps(one, _mm256_sqrt_ps(dist_sq));
@@ -116,29 +180,34 @@ pub(super) fn evaluate(
             _ => u32::MAX,
         };
         let chosen = u32::from(candidates.lanes) & relevant;
+        let facing = chosen & facing(cos_theta, cos_phi);
         gathered.chosen += chosen.count_ones();
-        let facing =
-            _mm256_and_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(cos_theta, zero), _mm256_cmp_ps::<_CMP_GT_OQ>(cos_phi, zero));
-        let facing = _mm256_movemask_ps(facing) as u32 & chosen;
-        if facing == 0 {
-            continue;
-        }
         gathered.shadow_rays += u64::from(facing.count_ones());
-        let (t_min, t_max) = shadow_ends(tracer.rules, to_light, _mm256_set1_ps(at.epsilon));
-        let packet = Packet { origin: point, direction: to_light, t_min, t_max };
-        let hidden = any_hits(tracer, &packet, Some(&source), facing);
-        let visible = spread(facing & !hidden);
-        let emission = _mm256_mul_ps(load(&block.attenuation), cos_phi);
-        let colors = load3(&block.diffuse);
-        for channel in 0..3 {
-            let reflected = _mm256_mul_ps(_mm256_mul_ps(colors[channel], diffuse[channel]), cos_theta);
-            let color = _mm256_min_ps(_mm256_mul_ps(reflected, emission), one);
-            sums[channel] = _mm256_add_ps(sums[channel], _mm256_and_ps(color, visible));
+        if batch.push(Incidence { cos_theta, cos_phi, block: candidates.block, lane: 0, facing }) {
+            trace(&mut batch);
         }
     }
+    trace(&mut batch);
     let [r, g, b] = [store(sums[0]), store(sums[1]), store(sums[2])];
     gathered.color = (0..LANES).fold(Vec3::ZERO, |total, lane| total + Vec3::new(r[lane], g[lane], b[lane]));
     gathered
+}
+
+/// Lanes where point and VPL face each other.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn facing(cos_theta: __m256, cos_phi: __m256) -> u32 {
+    let zero = _mm256_setzero_ps();
+    let is_positive = |cosine: __m256| _mm256_cmp_ps::<_CMP_GT_OQ>(cosine, zero);
+    _mm256_movemask_ps(_mm256_and_ps(is_positive(cos_theta), is_positive(cos_phi))) as u32
+}
+
+/// The vector of one lane, in all lanes.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn splat_lane(of: &[[f32; LANES]; 3], lane: usize) -> Wide3 {
+    let lane = lane % LANES;
+    splat3(Vec3::new(of[0][lane], of[1][lane], of[2][lane]))
 }
 
 /// Points that gather together, component by component; the last one fills what is left of the eight.
@@ -151,7 +220,7 @@ struct Points {
 }
 
 impl Points {
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     fn new(at: &[Receiver]) -> Self {
         let lane = |lane: usize| &at[lane.min(at.len() - 1)];
         let wide3 = |of: &dyn Fn(&Receiver) -> Vec3| -> [[f32; LANES]; 3] {
@@ -166,23 +235,73 @@ impl Points {
             epsilon: load(&epsilon),
         }
     }
+
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn to_light(&self, block: &VplBlock, lane: usize) -> Wide3 {
+        sub(splat_lane(&block.position, lane), self.point)
+    }
+
+    /// Which of the points in `asked` have a VPL, those of `tested` only where its relevance reaches the threshold or they are
+    /// certain; and how it would light them.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn incidence(
+        &self,
+        blocks: &Blocks<'_>,
+        (number, lane): (u32, usize),
+        asked: u32,
+        tested: Option<(f32, u32)>,
+    ) -> (u32, Incidence) {
+        let block = &blocks.vpls[number as usize];
+        let to_light = self.to_light(block, lane);
+        let dist_sq = dot(to_light, to_light);
+        let reciprocal = _mm256_div_ps(_mm256_set1_ps(1.0), _mm256_sqrt_ps(dist_sq));
+        let [x, y, z] = to_light;
+        let unit = [_mm256_mul_ps(x, reciprocal), _mm256_mul_ps(y, reciprocal), _mm256_mul_ps(z, reciprocal)];
+        let cos_theta = dot(self.normal, unit);
+        let cos_phi = _mm256_sub_ps(_mm256_setzero_ps(), dot(splat_lane(&block.direction, lane), unit));
+        let chosen = match tested {
+            Some((threshold, certain)) => {
+                let intensity = _mm256_set1_ps(block.intensity[lane % LANES]);
+                asked & (certain | relevant(intensity, cos_phi, dist_sq, threshold))
+            }
+            None => asked,
+        };
+        let facing = chosen & facing(cos_theta, cos_phi);
+        (chosen, Incidence { cos_theta, cos_phi, block: number, lane, facing })
+    }
 }
 
 /// Twin of [`evaluate`] for up to eight points, each with its candidates in the order of their blocks: one VPL at a time for all
 /// points that have it, whose shadow rays go much the same way.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn evaluate_together(
     tracer: &Tracer<'_>,
-    blocks: &[VplBlock],
+    blocks: &Blocks<'_>,
     candidates: &[&[Candidates]],
     threshold: Option<f32>,
     at: &[Receiver],
 ) -> [Gathered; LANES] {
     let zero = _mm256_setzero_ps();
     let points = Points::new(at);
-    let source = Source::new(&tracer.geometry, points.point);
+    let source = Source::new(&tracer.geometry, blocks.walls, points.point);
+    let mut batch = Batch(Stack::new());
     // By lane of the VPLs, as one point sums them.
     let mut sums = [[zero; 3]; LANES];
+    let mut trace = |batch: &mut Batch| {
+        let aim = |incidence: &Incidence| points.to_light(&blocks.vpls[incidence.block as usize], incidence.lane);
+        batch.trace((tracer, &source, blocks), points.epsilon, aim, |incidence, visible| {
+            let (block, lane) = (&blocks.vpls[incidence.block as usize], incidence.lane % LANES);
+            let emission = _mm256_mul_ps(_mm256_set1_ps(block.attenuation[lane]), incidence.cos_phi);
+            for (channel, sum) in sums[lane].iter_mut().enumerate() {
+                let color = _mm256_set1_ps(block.diffuse[channel][lane]);
+                let reflected = _mm256_mul_ps(_mm256_mul_ps(color, points.diffuse[channel]), incidence.cos_theta);
+                let color = _mm256_min_ps(_mm256_mul_ps(reflected, emission), _mm256_set1_ps(1.0));
+                *sum = _mm256_add_ps(*sum, _mm256_and_ps(color, visible));
+            }
+        });
+    };
     let (mut chosen, mut shadow_rays) = ([0_u32; LANES], [0_u32; LANES]);
     let mut next = [0_usize; LANES];
     loop {
@@ -198,16 +317,19 @@ pub(super) fn evaluate_together(
                 *asked |= u32::from(ahead.lanes >> lane & 1) << k;
             }
         }
-        let block = &blocks[number as usize];
         for lane in (0..LANES).filter(|&lane| asked[lane] != 0) {
             let tested = threshold.filter(|_| asked[lane] & !certain != 0).map(|threshold| (threshold, certain));
-            let lit = light(tracer, &source, &points, (block, lane), asked[lane], tested, &mut sums[lane]);
+            let (has, incidence) = points.incidence(blocks, (number, lane), asked[lane], tested);
             for k in 0..LANES {
-                chosen[k] += lit[0] >> k & 1;
-                shadow_rays[k] += lit[1] >> k & 1;
+                chosen[k] += has >> k & 1;
+                shadow_rays[k] += incidence.facing >> k & 1;
+            }
+            if batch.push(incidence) {
+                trace(&mut batch);
             }
         }
     }
+    trace(&mut batch);
     let mut total = [zero; 3];
     for sum in sums {
         for channel in 0..3 {
@@ -220,54 +342,4 @@ pub(super) fn evaluate_together(
         chosen: chosen[k],
         shadow_rays: u64::from(shadow_rays[k]),
     })
-}
-
-/// Adds what one VPL sends to the points in `asked`, those of `tested` only where its relevance reaches the threshold or they are
-/// certain; returns which of them have it, and which of these asked for shadow rays.
-#[target_feature(enable = "avx2,fma,bmi1")]
-#[inline]
-fn light(
-    tracer: &Tracer<'_>,
-    source: &Source,
-    points: &Points,
-    (block, lane): (&VplBlock, usize),
-    asked: u32,
-    tested: Option<(f32, u32)>,
-    sum: &mut Wide3,
-) -> [u32; 2] {
-    let zero = _mm256_setzero_ps();
-    let one = _mm256_set1_ps(1.0);
-    let splat = |of: &[[f32; LANES]; 3]| splat3(Vec3::new(of[0][lane], of[1][lane], of[2][lane]));
-    let to_light = sub(splat(&block.position), points.point);
-    let dist_sq = dot(to_light, to_light);
-    let reciprocal = _mm256_div_ps(one, _mm256_sqrt_ps(dist_sq));
-    let [x, y, z] = to_light;
-    let unit = [_mm256_mul_ps(x, reciprocal), _mm256_mul_ps(y, reciprocal), _mm256_mul_ps(z, reciprocal)];
-    let cos_theta = dot(points.normal, unit);
-    let cos_phi = _mm256_sub_ps(zero, dot(splat(&block.direction), unit));
-    let chosen = match tested {
-        Some((threshold, certain)) => {
-            let intensity = _mm256_set1_ps(block.intensity[lane]);
-            asked & (certain | relevant(intensity, cos_phi, dist_sq, threshold))
-        }
-        None => asked,
-    };
-    let facing =
-        _mm256_and_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(cos_theta, zero), _mm256_cmp_ps::<_CMP_GT_OQ>(cos_phi, zero));
-    let facing = _mm256_movemask_ps(facing) as u32 & chosen;
-    if facing == 0 {
-        return [chosen, 0];
-    }
-    let (t_min, t_max) = shadow_ends(tracer.rules, to_light, points.epsilon);
-    let packet = Packet { origin: points.point, direction: to_light, t_min, t_max };
-    let hidden = any_hits(tracer, &packet, Some(source), facing);
-    let visible = spread(facing & !hidden);
-    let emission = _mm256_mul_ps(_mm256_set1_ps(block.attenuation[lane]), cos_phi);
-    for (channel, sum) in sum.iter_mut().enumerate() {
-        let color = _mm256_set1_ps(block.diffuse[channel][lane]);
-        let reflected = _mm256_mul_ps(_mm256_mul_ps(color, points.diffuse[channel]), cos_theta);
-        let color = _mm256_min_ps(_mm256_mul_ps(reflected, emission), one);
-        *sum = _mm256_add_ps(*sum, _mm256_and_ps(color, visible));
-    }
-    [chosen, facing]
 }

@@ -9,8 +9,10 @@
 #![allow(unsafe_code)]
 
 use super::avx2_bundle::Bundle;
-use super::avx2_trace::{Wide3, any_hit, dot, lanes, load, splat3, store, sub};
+use super::avx2_trace::{Wide3, any_hit, dot, lanes, load, splat3, sub};
 use super::tracer::{RayLanes, Tracer};
+use super::walls::FEW;
+use bytemuck::cast_ref;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square};
@@ -22,47 +24,21 @@ use std::arch::x86_64::{
     _mm256_mul_ps, _mm256_or_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
 
-/// Most spheres, and most squares, that are tested one after the other rather than found by the hierarchy.
-const FEW: usize = 16;
-
 /// Relative margin of comparisons that spare a division, far above its rounding error.
 const MARGIN: f32 = 1e-6;
 
-/// What of a few spheres and squares depends only on where rays begin: computed once for all packets from there.
-pub(super) struct Source {
-    /// Of each sphere the vector from its centre, and the square of its length less that of the radius.
-    spheres: [(Wide3, __m256); FEW],
-    /// Of each square how far its centre is along its normal.
-    heights: [__m256; FEW],
-}
-
-impl Source {
-    #[target_feature(enable = "avx2,fma,bmi1")]
-    pub(super) fn new(geometry: &Geometry<'_>, origin: Wide3) -> Self {
-        let zero = _mm256_setzero_ps();
-        let mut source = Self { spheres: [([zero; 3], zero); FEW], heights: [zero; FEW] };
-        for (of, sphere) in source.spheres.iter_mut().zip(geometry.spheres) {
-            *of = sphere_from(sphere, origin);
-        }
-        for (height, square) in source.heights.iter_mut().zip(geometry.squares) {
-            *height = height_of(square, origin);
-        }
-        source
-    }
-}
-
 /// The vectors from a sphere's centre, and the squares of their lengths less that of the radius.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-fn sphere_from(sphere: &Sphere, origin: Wide3) -> (Wide3, __m256) {
+pub(super) fn sphere_from(sphere: &Sphere, origin: Wide3) -> (Wide3, __m256) {
     let offset = sub(origin, splat3(sphere.center));
     (offset, _mm256_sub_ps(dot(offset, offset), _mm256_set1_ps(sphere.radius * sphere.radius)))
 }
 
 /// How far a square's centre is along its normal.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-fn height_of(square: &Square, origin: Wide3) -> __m256 {
+pub(super) fn height_of(square: &Square, origin: Wide3) -> __m256 {
     dot(sub(splat3(square.center), origin), splat3(square.normal))
 }
 
@@ -75,71 +51,50 @@ pub(super) struct Packet {
     pub(super) t_max: __m256,
 }
 
-/// Which of the packet's rays in `asked` (a bit each) hit anything between their ends. `source` is given where several packets
-/// begin at the same places.
-#[target_feature(enable = "avx2,fma,bmi1")]
-pub(super) fn any_hits(tracer: &Tracer<'_>, packet: &Packet, source: Option<&Source>, asked: u32) -> u32 {
+/// Which of the packet's rays in `asked` (a bit each) hit anything between their ends.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+pub(super) fn any_hits(tracer: &Tracer<'_>, packet: &Packet, asked: u32) -> u32 {
     let Tracer { geometry, rules, .. } = tracer;
     if geometry.spheres.len() > FEW || geometry.squares.len() > FEW {
         return packet.singly::<true>(geometry, *rules, asked);
     }
     let mut open = asked;
-    for (index, square) in geometry.squares.iter().enumerate() {
-        let height = match source {
-            Some(source) => source.heights[index % FEW],
-            None => height_of(square, packet.origin),
-        };
-        open &= !packet.hits_square(square, height);
+    for square in geometry.squares {
+        open &= !packet.hits_square(square, height_of(square, packet.origin));
     }
-    for (index, sphere) in geometry.spheres.iter().enumerate() {
-        let (offset, c) = match source {
-            Some(source) => source.spheres[index % FEW],
-            None => sphere_from(sphere, packet.origin),
-        };
+    for sphere in geometry.spheres {
+        let (offset, c) = sphere_from(sphere, packet.origin);
         open &= !packet.hits_sphere(sphere, offset, c, *rules);
     }
-    if open != 0 && !geometry.triangles.is_empty() {
-        let near = packet.meet(tracer.mesh) & open;
-        open &= !match Bundle::new(packet, near) {
-            Some(bundle) => bundle.any_hits(geometry, *rules, near),
-            None => packet.singly::<false>(geometry, *rules, near),
-        };
-    }
-    asked & !open
+    asked & !packet.miss_mesh(tracer, open)
 }
 
 /// Twin of `Tracer::occluded8` for rays that are not inside of anything and have no end behind their origin.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn occluded(tracer: &Tracer<'_>, rays: &[Ray; LANES], asked: u32) -> u32 {
-    any_hits(tracer, &Packet::new(rays), None, asked)
+    any_hits(tracer, &Packet::new(rays), asked)
 }
 
 // Written out: with `map`, over arrays of registers, the compiler has been seen to misplace them on the stack.
 
 /// Eight vectors by their coordinates.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 fn wide3(vectors: [Vec3; LANES]) -> Wide3 {
     [load(&vectors.map(|v| v.x)), load(&vectors.map(|v| v.y)), load(&vectors.map(|v| v.z))]
 }
 
-/// The coordinates of eight vectors.
-#[target_feature(enable = "avx2,fma,bmi1")]
-fn store3([x, y, z]: Wide3) -> [[f32; LANES]; 3] {
-    [store(x), store(y), store(z)]
-}
-
 /// Twin of `Tracer::occluded_lanes`.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn occluded_lanes(tracer: &Tracer<'_>, rays: &RayLanes, asked: u32) -> u32 {
     let load3 = |of: &[[f32; LANES]; 3]| [load(&of[0]), load(&of[1]), load(&of[2])];
     let (origin, direction) = (load3(&rays.origin), load3(&rays.direction));
     let packet = Packet { origin, direction, t_min: _mm256_setzero_ps(), t_max: load(&rays.t_max) };
-    any_hits(tracer, &packet, None, asked)
+    any_hits(tracer, &packet, asked)
 }
 
 /// Twin of `kernel::ray::safe_reciprocal`.
-#[target_feature(enable = "avx2,fma,bmi1")]
-pub(super) fn safe_reciprocal(c: __m256) -> __m256 {
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+fn safe_reciprocal(c: __m256) -> __m256 {
     let sign_bit = _mm256_set1_ps(-0.0);
     let tiny = _mm256_set1_ps(1e-20);
     let signed_tiny = _mm256_or_ps(tiny, _mm256_and_ps(sign_bit, c));
@@ -148,7 +103,7 @@ pub(super) fn safe_reciprocal(c: __m256) -> __m256 {
 }
 
 /// Of eight rays those that meet a box before `limit`, as in `bvh::enter_box`.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 pub(super) fn meet(
     origin: Wide3,
@@ -168,7 +123,7 @@ pub(super) fn meet(
 }
 
 impl Packet {
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     pub(super) fn new(rays: &[Ray; LANES]) -> Self {
         Self {
             origin: wide3(rays.map(|ray| ray.origin)),
@@ -178,44 +133,55 @@ impl Packet {
         }
     }
 
+    /// Rays of `open` that hit no triangle.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    pub(super) fn miss_mesh(&self, tracer: &Tracer<'_>, open: u32) -> u32 {
+        let Tracer { geometry, rules, .. } = tracer;
+        if open == 0 || geometry.triangles.is_empty() {
+            return open;
+        }
+        let (reciprocal, (lower, upper)) = (self.reciprocal(), tracer.mesh);
+        let near = meet(self.origin, reciprocal, self.t_min, self.t_max, (splat3(lower), splat3(upper))) & open;
+        open & !match Bundle::new(self, reciprocal, near) {
+            Some(bundle) => bundle.any_hits(geometry, *rules, near),
+            None => self.singly::<false>(geometry, *rules, near),
+        }
+    }
+
     /// Rays of `asked` that hit anything, one after the other; spheres and squares count where `OTHERS` says so.
-    #[target_feature(enable = "avx2,fma,bmi1")]
-    fn singly<const OTHERS: bool>(&self, geometry: &Geometry<'_>, rules: Rules, asked: u32) -> u32 {
-        let rays = self.rays();
-        let is_hit = |&lane: &usize| any_hit::<OTHERS>(geometry, &rays[lane], rules, 0);
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    pub(super) fn singly<const OTHERS: bool>(&self, geometry: &Geometry<'_>, rules: Rules, asked: u32) -> u32 {
+        let is_hit = |&lane: &usize| any_hit::<OTHERS>(geometry, &self.ray(lane), rules, 0);
         lanes(asked).filter(is_hit).fold(0, |hits, lane| hits | 1 << lane)
     }
 
-    /// One by one.
-    #[target_feature(enable = "avx2,fma,bmi1")]
-    pub(super) fn rays(&self) -> [Ray; LANES] {
-        let (origin, direction) = (store3(self.origin), store3(self.direction));
-        let (t_min, t_max) = (store(self.t_min), store(self.t_max));
-        std::array::from_fn(|lane| {
-            let at = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
-            let (origin, direction) = (at(&origin), at(&direction));
-            Ray { origin, direction, t_min: t_min[lane], t_max: t_max[lane], inside: false }
-        })
+    /// The ray of one lane.
+    pub(super) fn ray(&self, lane: usize) -> Ray {
+        let at = |of: &__m256| cast_ref::<__m256, [f32; LANES]>(of)[lane % LANES];
+        let vector = |[x, y, z]: &Wide3| Vec3::new(at(x), at(y), at(z));
+        let (origin, direction) = (vector(&self.origin), vector(&self.direction));
+        Ray { origin, direction, t_min: at(&self.t_min), t_max: at(&self.t_max), inside: false }
     }
 
-    /// Rays that meet a box, as in `bvh::enter_box`.
-    #[target_feature(enable = "avx2,fma,bmi1")]
-    fn meet(&self, (lower, upper): (Vec3, Vec3)) -> u32 {
+    /// Of the directions, safe in slab tests.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    pub(super) fn reciprocal(&self) -> Wide3 {
         let [x, y, z] = self.direction;
-        let reciprocal = [safe_reciprocal(x), safe_reciprocal(y), safe_reciprocal(z)];
-        meet(self.origin, reciprocal, self.t_min, self.t_max, (splat3(lower), splat3(upper)))
+        [safe_reciprocal(x), safe_reciprocal(y), safe_reciprocal(z)]
     }
 
     /// Lanes with `t` between their ends.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     pub(super) fn between_ends(&self, t: __m256) -> __m256 {
         _mm256_and_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(t, self.t_min), _mm256_cmp_ps::<_CMP_LT_OQ>(t, self.t_max))
     }
 
     /// Twin of `intersect_square`.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    fn hits_square(&self, square: &Square, height: __m256) -> u32 {
+    pub(super) fn hits_square(&self, square: &Square, height: __m256) -> u32 {
         let slope = dot(self.direction, splat3(square.normal));
         // t = height / slope lies between the ends only if this does; rays between the walls of a room are done here.
         let sign_bit = _mm256_set1_ps(-0.0);
@@ -233,7 +199,7 @@ impl Packet {
     }
 
     /// Hits of a square, and where: twin of `intersect_square`.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     pub(super) fn meet_square(&self, square: &Square) -> (__m256, __m256) {
         let slope = dot(self.direction, splat3(square.normal));
         let t = _mm256_div_ps(dot(sub(splat3(square.center), self.origin), splat3(square.normal)), slope);
@@ -242,7 +208,7 @@ impl Packet {
     }
 
     /// Rays that are within a square's edges at a point of its plane.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     fn within(&self, square: &Square, t: __m256) -> __m256 {
         let center = splat3(square.center);
         let offset_on = |axis: usize| {
@@ -257,10 +223,21 @@ impl Packet {
         _mm256_and_ps(inside(square.along, square.half_height), inside(square.across, square.half_width))
     }
 
-    /// Twin of `intersect_sphere` for rays outside.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    /// Rays whose whole lines meet a sphere, as [`Packet::hits_sphere`] finds first.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    fn hits_sphere(&self, sphere: &Sphere, offset: Wide3, c: __m256, rules: Rules) -> u32 {
+    pub(super) fn meets_sphere(&self, sphere: &Sphere, offset: Wide3, c: __m256, rules: Rules) -> u32 {
+        let discriminant = match rules {
+            Rules::Original => self.discriminant_original(offset, c)[2],
+            Rules::Repaired => self.discriminant_repaired(offset, sphere.radius)[2],
+        };
+        _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(discriminant, _mm256_setzero_ps())) as u32
+    }
+
+    /// Twin of `intersect_sphere` for rays outside.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    pub(super) fn hits_sphere(&self, sphere: &Sphere, offset: Wide3, c: __m256, rules: Rules) -> u32 {
         let hit = match rules {
             Rules::Original => self.sphere_original(offset, c),
             Rules::Repaired => self.sphere_repaired(offset, c, sphere.radius),
@@ -268,14 +245,22 @@ impl Packet {
         _mm256_movemask_ps(hit) as u32
     }
 
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    /// The a, b and discriminant of the original's equation.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn discriminant_original(&self, offset: Wide3, c: __m256) -> [__m256; 3] {
+        let a = dot(self.direction, self.direction);
+        let b = _mm256_mul_ps(_mm256_set1_ps(2.0), dot(self.direction, offset));
+        let product = _mm256_mul_ps(_mm256_mul_ps(_mm256_set1_ps(4.0), a), c);
+        [a, b, _mm256_sub_ps(_mm256_mul_ps(b, b), product)]
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
     fn sphere_original(&self, offset: Wide3, c: __m256) -> __m256 {
         let zero = _mm256_setzero_ps();
         let two = _mm256_set1_ps(2.0);
-        let a = dot(self.direction, self.direction);
-        let b = _mm256_mul_ps(two, dot(self.direction, offset));
-        let product = _mm256_mul_ps(_mm256_mul_ps(_mm256_set1_ps(4.0), a), c);
-        let discriminant = _mm256_sub_ps(_mm256_mul_ps(b, b), product);
+        let [a, b, discriminant] = self.discriminant_original(offset, c);
         let real = _mm256_cmp_ps::<_CMP_GE_OQ>(discriminant, zero);
         if _mm256_movemask_ps(real) == 0 {
             return zero;
@@ -289,9 +274,10 @@ impl Packet {
         _mm256_and_ps(_mm256_and_ps(real, counts), self.between_ends(t))
     }
 
-    #[target_feature(enable = "avx2,fma,bmi1")]
-    fn sphere_repaired(&self, offset: Wide3, c: __m256, radius: f32) -> __m256 {
-        let zero = _mm256_setzero_ps();
+    /// The a, half b and discriminant of the repaired equation.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn discriminant_repaired(&self, offset: Wide3, radius: f32) -> [__m256; 3] {
         let sign_bit = _mm256_set1_ps(-0.0);
         let a = dot(self.direction, self.direction);
         // A negated dot product keeps its zero's sign in the plain version.
@@ -300,7 +286,15 @@ impl Packet {
         let nearest_on = |axis: usize| _mm256_add_ps(offset[axis], _mm256_mul_ps(self.direction[axis], along));
         let nearest = [nearest_on(0), nearest_on(1), nearest_on(2)];
         let depth = _mm256_sub_ps(_mm256_set1_ps(radius * radius), dot(nearest, nearest));
-        let discriminant = _mm256_mul_ps(a, depth);
+        [a, half_b, _mm256_mul_ps(a, depth)]
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn sphere_repaired(&self, offset: Wide3, c: __m256, radius: f32) -> __m256 {
+        let zero = _mm256_setzero_ps();
+        let sign_bit = _mm256_set1_ps(-0.0);
+        let [a, half_b, discriminant] = self.discriminant_repaired(offset, radius);
         let real = _mm256_cmp_ps::<_CMP_GE_OQ>(discriminant, zero);
         if _mm256_movemask_ps(real) == 0 {
             return zero;

@@ -66,7 +66,7 @@ pub(super) fn cross(a: Wide3, b: Wide3) -> Wide3 {
 
 /// Lanes whose line crosses their triangle (corner and two edges), with t, u and v; the arithmetic of `intersect_triangle`. The
 /// ends of the rays are left to the caller.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 pub(super) fn cross_triangles(
     origin: Wide3,
@@ -109,7 +109,7 @@ struct BoxRay {
 }
 
 impl BoxRay {
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     fn new(ray: &Ray) -> Self {
         let reciprocal = safe_reciprocal(ray.direction);
         let start = ray.origin * reciprocal;
@@ -127,7 +127,7 @@ impl BoxRay {
     ///
     /// The rounding of `start` moves a side by at most 2^-24 of the origin's coordinate, a small part of the padding that boxes
     /// have for it (`PADDING` in `lightcuts_world`); the rest is as in the plain version.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn enter(&self, node: &BvhNode, limit: __m256) -> (u32, __m256) {
         let near = |axis: usize| {
@@ -145,7 +145,7 @@ impl BoxRay {
 }
 
 /// A ray in all lanes, to meet triangles.
-struct WideRay {
+pub(super) struct WideRay {
     origin: Wide3,
     direction: Wide3,
     t_min: __m256,
@@ -153,8 +153,8 @@ struct WideRay {
 }
 
 impl WideRay {
-    #[target_feature(enable = "avx2,fma,bmi1")]
-    fn new(ray: &Ray) -> Self {
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    pub(super) fn new(ray: &Ray) -> Self {
         Self {
             origin: splat3(ray.origin),
             direction: splat3(ray.direction),
@@ -164,9 +164,9 @@ impl WideRay {
     }
 
     /// Lanes of a block that the ray hits, with t, u and v; the arithmetic of `intersect_triangle`.
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    fn intersect(&self, block: &TriangleBlock, min_determinant: f32) -> (u32, [__m256; 3]) {
+    pub(super) fn intersect(&self, block: &TriangleBlock, min_determinant: f32) -> (u32, [__m256; 3]) {
         let triangles = [load3(&block.corner), load3(&block.edge1), load3(&block.edge2)];
         let (inside, [t, u, v]) = cross_triangles(self.origin, self.direction, triangles, min_determinant);
         let after = _mm256_cmp_ps::<_CMP_GT_OQ>(t, self.t_min);
@@ -192,6 +192,21 @@ impl<T: Copy, const SIZE: usize> Stack<T, SIZE> {
     pub(super) fn push_if(&mut self, value: T, is_wanted: bool) {
         self.entries[self.size] = MaybeUninit::new(value);
         self.size += usize::from(is_wanted);
+    }
+
+    #[inline]
+    pub(super) fn push(&mut self, value: T) {
+        self.push_if(value, true);
+    }
+
+    pub(super) fn as_slice(&self) -> &[T] {
+        // SAFETY: every entry below the size was written.
+        unsafe { std::slice::from_raw_parts(self.entries.as_ptr().cast(), self.size) }
+    }
+
+    pub(super) fn as_mut_slice(&mut self) -> &mut [T] {
+        // SAFETY: every entry below the size was written.
+        unsafe { std::slice::from_raw_parts_mut(self.entries.as_mut_ptr().cast(), self.size) }
     }
 
     #[inline]
@@ -237,7 +252,7 @@ pub(super) fn block<'a>(geometry: &Geometry<'a>, node: &BvhNode, lane: usize) ->
 
 /// Whether anything lies between the ray's ends, under a node, 0 for everything. `OTHERS` says whether spheres and squares
 /// count.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn any_hit<const OTHERS: bool>(geometry: &Geometry<'_>, ray: &Ray, rules: Rules, under: u32) -> bool {
     let Some(mut node) = geometry.nodes.get(under as usize) else { return false };
     let (boxes, wide) = (BoxRay::new(ray), WideRay::new(ray));
@@ -291,13 +306,13 @@ pub(super) fn other_hit(geometry: &Geometry<'_>, child: u32, ray: &Ray, rules: R
 }
 
 /// The nearest hit between the ray's ends; of equal hits the first in file order.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn closest_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> Hit {
     nearer_hit(geometry, ray, rules, 0, Hit::none(ray.t_max))
 }
 
 /// The nearest of the hits under a node and of the best one so far.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 pub(super) fn nearer_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules, under: u32, mut best: Hit) -> Hit {
     let Some(mut node) = geometry.nodes.get(under as usize) else { return best };
@@ -329,7 +344,7 @@ pub(super) fn nearer_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules, under
 }
 
 /// The nearest of some children; the others go to the stack, the farthest lowest.
-#[target_feature(enable = "avx2,fma,bmi1")]
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn nearest(stack: &mut Stack<(u32, f32), STACK_SIZE>, node: &BvhNode, inner: u32, entry: __m256) -> u32 {
     let first = inner.trailing_zeros() as usize % LANES;

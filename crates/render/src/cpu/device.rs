@@ -1,7 +1,7 @@
 //! The CPU as a device: it never faults, so that it can take over from any other.
 
-use super::{Simd, Tracer};
-use crate::device::{Device, DeviceFault, DeviceInfo, DeviceKind, Pass, TileResult, View};
+use super::{Simd, Tracer, Walls};
+use crate::device::{Device, DeviceFault, DeviceInfo, DeviceKind, Lighting, Pass, TileResult, View};
 use crate::film::Tile;
 use crate::light_tree::{LightTree, TreeLayout};
 use crate::monitor::Monitor;
@@ -50,9 +50,13 @@ impl Device for CpuDevice<'_> {
         monitor: &dyn Monitor,
     ) -> Result<Vec<Option<TileResult>>, DeviceFault> {
         let tracer = self.tracer(&pass.view);
+        let walls = match pass.lighting {
+            Lighting::Vpls(vpls) => Walls::new(&tracer, vpls.tree),
+            Lighting::Scene { .. } => Walls::default(),
+        };
         let results = tiles
             .par_iter()
-            .map(|tile| (!monitor.cancelled()).then(|| pass.render_tile(tracer, tile)))
+            .map(|tile| (!monitor.cancelled()).then(|| pass.render_tile(tracer, &walls, tile)))
             .inspect(|_| monitor.advance())
             .collect();
         Ok(results)

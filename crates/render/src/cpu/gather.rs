@@ -1,6 +1,6 @@
 //! Which VPLs light a point, and what they add: the plain versions and the choice between them and SIMD.
 
-use super::Tracer;
+use super::{Tracer, Walls};
 use crate::light_node::{LANES, LightNode, VplBlock};
 use crate::light_tree::{LightTree, Nodes, PackedTree};
 use crate::stats::TreeVisits;
@@ -27,6 +27,13 @@ pub(crate) struct Gathered {
     /// Number of chosen VPLs.
     pub(crate) chosen: u32,
     pub(crate) shadow_rays: u64,
+}
+
+/// The VPLs of a tree.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Blocks<'a> {
+    pub(crate) vpls: &'a [VplBlock],
+    pub(crate) walls: &'a Walls,
 }
 
 /// A point that gathers light.
@@ -207,7 +214,7 @@ pub(crate) fn relevant_lanes(block: &VplBlock, point: Vec3, threshold: f32) -> u
 #[allow(unsafe_code)]
 pub(crate) fn evaluate(
     tracer: &Tracer<'_>,
-    blocks: &[VplBlock],
+    blocks: &Blocks<'_>,
     candidates: &[Candidates],
     threshold: Option<f32>,
     at: &Receiver,
@@ -220,7 +227,7 @@ pub(crate) fn evaluate(
     let mut sums = [Vec3::ZERO; LANES];
     let mut gathered = Gathered { color: Vec3::ZERO, chosen: 0, shadow_rays: 0 };
     for candidates in candidates {
-        let block = &blocks[candidates.block as usize];
+        let block = &blocks.vpls[candidates.block as usize];
         let tested = threshold.filter(|_| !candidates.certain);
         let relevant = tested.map_or(u32::MAX, |threshold| relevant_lanes(block, at.point, threshold));
         let chosen = u32::from(candidates.lanes) & relevant;
@@ -243,7 +250,7 @@ pub(crate) fn evaluate(
 #[allow(unsafe_code)]
 pub(crate) fn evaluate_together(
     tracer: &Tracer<'_>,
-    blocks: &[VplBlock],
+    blocks: &Blocks<'_>,
     candidates: &[&[Candidates]],
     threshold: Option<f32>,
     at: &[Receiver],

@@ -10,21 +10,27 @@ mod avx2_gather;
 #[cfg(target_arch = "x86_64")]
 mod avx2_packet;
 #[cfg(target_arch = "x86_64")]
+mod avx2_shadows;
+#[cfg(target_arch = "x86_64")]
 mod avx2_trace;
 mod device;
 mod gather;
 mod lanes;
 mod tracer;
+mod walls;
 
 pub use device::{CpuDevice, processor_name};
 #[cfg(test)]
 pub(crate) use gather::relevant_lanes;
-pub(crate) use gather::{Candidates, Gathered, Receiver, evaluate, evaluate_together, select, select_exhaustively};
+pub(crate) use gather::{
+    Blocks, Candidates, Gathered, Receiver, evaluate, evaluate_together, select, select_exhaustively,
+};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::Wide;
 pub(crate) use lanes::{Lanes, Plain};
 pub(crate) use tracer::RayLanes;
 pub use tracer::Tracer;
+pub(crate) use walls::Walls;
 
 /// Whether SIMD instructions are used. Never changes the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -43,7 +49,8 @@ impl Simd {
         return self == Self::Auto
             && std::arch::is_x86_feature_detected!("avx2")
             && std::arch::is_x86_feature_detected!("fma")
-            && std::arch::is_x86_feature_detected!("bmi1");
+            && std::arch::is_x86_feature_detected!("bmi1")
+            && std::arch::is_x86_feature_detected!("popcnt");
         #[cfg(not(target_arch = "x86_64"))]
         false
     }

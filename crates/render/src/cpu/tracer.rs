@@ -110,7 +110,7 @@ fn mesh_box(geometry: &Geometry<'_>) -> (Vec3, Vec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cpu::{Candidates, Receiver, evaluate, evaluate_together, select};
+    use crate::cpu::{Blocks, Candidates, Receiver, Walls, evaluate, evaluate_together, select};
     use crate::light_tree::tests::scattered;
     use crate::light_tree::{LightTree, TreeLayout};
     use lightcuts_import::{ImportOptions, load};
@@ -234,7 +234,9 @@ mod tests {
                     epsilon: 0.01,
                 };
                 let gather = |simd| {
-                    evaluate(&Tracer::new(world.shapes.geometry(), rules, simd), &tree.blocks, &all, Some(1e-5), &at)
+                    let tracer = Tracer::new(world.shapes.geometry(), rules, simd);
+                    let walls = Walls::new(&tracer, &tree);
+                    evaluate(&tracer, &Blocks { vpls: &tree.blocks, walls: &walls }, &all, Some(1e-5), &at)
                 };
                 let (plain, wide) = (gather(Simd::Off), gather(Simd::Auto));
                 assert_eq!(plain, wide, "{scene} at {}", at.point);
@@ -274,7 +276,8 @@ mod tests {
                     }
                     let count = 2 + (k % 7) as usize;
                     let lists = lists.each_ref().map(|list| &list[..]);
-                    let blocks = &tree.blocks;
+                    let walls = Walls::new(&tracer, &tree);
+                    let blocks = &Blocks { vpls: &tree.blocks, walls: &walls };
                     let together = evaluate_together(&tracer, blocks, &lists[..count], threshold, &receivers[..count]);
                     for lane in 0..count {
                         let alone = evaluate(&tracer, blocks, lists[lane], threshold, &receivers[lane]);

@@ -103,7 +103,7 @@ impl<'a> Bundle<'a> {
     }
 
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     fn all_avx2(&self, tree: &ClusterTree, counts: &mut Counts) -> [Gathered; LANES] {
         self.sum_of_all::<crate::cpu::Wide>(tree, counts)
     }
@@ -121,7 +121,7 @@ impl<'a> Bundle<'a> {
     }
 
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma,bmi1")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     fn cut_avx2(&self, cutting: &Cutting<'_>, clusters: &mut Clusters, counts: &mut Counts) -> [Gathered; LANES] {
         self.sum_of_cut::<crate::cpu::Wide>(cutting, clusters, counts)
     }
