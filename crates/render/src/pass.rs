@@ -97,41 +97,36 @@ struct Sample {
 }
 
 impl Worker<'_> {
-    /// Renders a few rows of pixels in their order.
+    /// Renders a few rows of pixels: camera rays look together, eight neighbours at a time, and each goes on alone, in the order of
+    /// the pixels.
     fn render_rows(&mut self, pixels: &[(u32, u32)]) {
         let view = &self.pass.view;
         self.samples.clear();
         for (place, &(i, j)) in pixels.iter().enumerate() {
             self.add_samples(place, i, j);
         }
-        let first_seen = self.result.seen.len();
-        self.result.seen.resize(first_seen + pixels.len(), Seen::default());
         let samples = std::mem::take(&mut self.samples);
-        let firsts = if self.shader.looks_together() { self.look_together(pixels, &samples) } else { Vec::new() };
-        for (k, sample) in samples.iter().enumerate() {
-            let (i, j) = pixels[sample.place];
-            self.shader.place = sample.number;
-            self.shader.first = firsts.get(k).copied();
-            self.shader.selected.clear();
-            let color = self.tree.trace(&mut self.shader, sample.ray);
-            self.result.film.add(view.filter, i, j, sample.shift, color);
-            self.report(first_seen + sample.place);
-        }
-        self.samples = samples;
-    }
-
-    /// What the camera rays find, eight neighbours at a time.
-    fn look_together(&mut self, pixels: &[(u32, u32)], samples: &[Sample]) -> Vec<First> {
         let mut order: Vec<usize> = (0..samples.len()).collect();
         order.sort_by_key(|&k| pixels[samples[k].place].0 / BLOCK_WIDTH);
         let mut firsts = vec![First::default(); samples.len()];
         for group in order.chunks(LANES) {
-            let rays: Vec<Ray> = group.iter().map(|&k| samples[k].ray).collect();
-            for (&k, first) in group.iter().zip(self.shader.look(&rays)) {
+            let ray = |lane: usize| samples[group[lane.min(group.len() - 1)]].ray;
+            for (&k, first) in group.iter().zip(self.shader.look(&std::array::from_fn(ray), group.len())) {
                 firsts[k] = first;
             }
         }
-        firsts
+        let seen = self.result.seen.len();
+        self.result.seen.resize(seen + pixels.len(), Seen::default());
+        for (sample, first) in samples.iter().zip(firsts) {
+            let (i, j) = pixels[sample.place];
+            self.shader.place = sample.number;
+            self.shader.first = Some(first);
+            self.shader.selected.clear();
+            let color = self.tree.trace(&mut self.shader, sample.ray);
+            self.result.film.add(view.filter, i, j, sample.shift, color);
+            self.report(seen + sample.place);
+        }
+        self.samples = samples;
     }
 
     /// The camera rays of a pixel; none where the pass leaves it out.

@@ -104,20 +104,17 @@ impl<'a> Shader<'a> {
         })
     }
 
-    /// Whether neighbouring camera rays are to look together. Among few spheres and squares alone they have no way down a
-    /// hierarchy to share, and looking one by one is no slower.
-    pub(crate) fn looks_together(&self) -> bool {
-        !self.tracer.geometry.triangles.is_empty()
-    }
-
-    /// What up to eight neighbouring camera rays find, and the VPLs' light there.
-    pub(crate) fn look(&mut self, rays: &[Ray]) -> [First; LANES] {
-        let hits = self.tracer.closest8(&std::array::from_fn(|k| rays[k.min(rays.len() - 1)]));
+    /// What neighbouring camera rays find, of eight the first `count`, and the VPLs' light there.
+    pub(crate) fn look(&mut self, rays: &[Ray; LANES], count: usize) -> [First; LANES] {
+        let hits = self.tracer.closest8(rays);
         let mut firsts = [First::default(); LANES];
-        for ((ray, hit), first) in rays.iter().zip(hits).zip(&mut firsts) {
+        for ((ray, hit), first) in rays.iter().zip(hits).zip(&mut firsts).take(count) {
             first.found = self.found(ray, hit);
         }
-        if let Lighting::Vpls(vpls) = self.lighting {
+        // Among few spheres and squares alone, eight VPLs for one point are as quick: there is no way down a hierarchy to share.
+        if let Lighting::Vpls(vpls) = self.lighting
+            && !self.tracer.geometry.triangles.is_empty()
+        {
             self.gather_together(&vpls, &mut firsts);
         }
         firsts

@@ -27,22 +27,16 @@ pub(super) struct Batch {
     /// Whether any hit will do, or the nearest is wanted.
     pub(super) is_any: bool,
     /// Whether packets are measured too.
-    has_packets: bool,
-    /// Embree's figures for single rays and packets.
+    pub(super) has_packets: bool,
+    /// Embree's figures of another day for single rays and packets.
     embree: [Embree; 2],
 }
 
 impl Batch {
-    /// What is compared, obvhs first.
-    pub(super) fn methods(&self) -> Vec<Method> {
-        let packets = self.has_packets.then_some(Method::Packets);
-        [Method::Obvhs, Method::Single].into_iter().chain(packets).collect()
-    }
-
-    /// Embree's figure for a room of about as many triangles.
+    /// Embree's figure of another day, for a room of about as many triangles.
     pub(super) fn embree(&self, method: Method, triangles: u64) -> Option<f64> {
         let of_method = match method {
-            Method::Obvhs => None,
+            Method::Obvhs | Method::Embree | Method::EmbreePackets => None,
             Method::Single => self.embree[0],
             Method::Packets => self.embree[1],
         };

@@ -6,15 +6,16 @@
 
 #![allow(unsafe_code)]
 
-use super::avx2_packet::{Packet, meet};
+use super::avx2_packet::{Packet, meet, sphere_from};
 use super::avx2_trace::{
     Stack, Wide3, WideRay, any_hit, block, closest_hit, cross_triangles, lanes, load, nearer_hit, other_hit, splat3,
     store,
 };
 use super::tracer::Tracer;
+use super::walls::FEW;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
-use lightcuts_kernel::intersect::min_determinant;
+use lightcuts_kernel::intersect::{Sphere, Square, min_determinant};
 use lightcuts_kernel::ray::{Hit, NONE, Ray, SLAB_SLACK};
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
@@ -159,16 +160,20 @@ impl<'a> Bundle<'a> {
         asked & !open
     }
 
-    /// The nearest hits of all eight rays, which are `rays`.
+    /// The nearest of the best hits so far and those of the rays in `asked`; `rays` are all of them. `OTHERS` says whether spheres
+    /// and squares count.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    pub(super) fn closest_hits(&self, geometry: &Geometry<'_>, rules: Rules, rays: &[Ray; LANES]) -> [Hit; LANES] {
-        let zero = _mm256_setzero_ps();
-        let none = _mm256_set1_epi32(NONE as i32);
-        let mut best = Nearest { t: self.packet.t_max, primitive: none, u: zero, v: zero };
+    fn closest_hits<const OTHERS: bool>(
+        &self,
+        (geometry, rules): (&Geometry<'_>, Rules),
+        rays: &[Ray; LANES],
+        asked: u32,
+        mut best: Nearest,
+    ) -> [Hit; LANES] {
         let mut limit = range(best.t, ALL).1;
         // Nodes, each with the rays that enter it and where the first does.
         let mut stack = Stack::<(u32, u32, f32), STACK_SIZE>::new();
-        let mut next = (!geometry.nodes.is_empty()).then_some((0, ALL, 0.0));
+        let mut next = (!geometry.nodes.is_empty()).then_some((0, asked, 0.0));
         while let Some((index, active, entry)) = next {
             if entry > _mm256_cvtss_f32(limit) {
                 // Everything that could be hit there lies behind.
@@ -183,7 +188,7 @@ impl<'a> Bundle<'a> {
                 let node = &geometry.nodes[index as usize];
                 let (mask, entry) = self.enter(node, limit);
                 let (leaves, entries, base) = (node.triangles | node.others, store(entry), stack.size);
-                for lane in lanes(mask & leaves) {
+                for lane in lanes(mask & if OTHERS { leaves } else { node.triangles }) {
                     if self.meet(node, lane, best.t) != 0 {
                         self.meet_leaf(geometry, rules, rays, node.child[lane], &mut best);
                     }
@@ -215,11 +220,7 @@ impl<'a> Bundle<'a> {
                     best.take_nearer(hit, values, block.primitive[lane]);
                 }
             }
-            ChildRef::Square(index) => {
-                let square = &geometry.squares[index as usize];
-                let (hit, t) = self.packet.meet_square(square);
-                best.take_nearer(hit, [t, zero, zero], square.primitive);
-            }
+            ChildRef::Square(index) => best.take_square(self.packet, &geometry.squares[index as usize]),
             ChildRef::Sphere(index) => {
                 let hits = rays.map(|ray| other_hit(geometry, leaf, &ray, rules));
                 let t = load(&hits.map(|hit| hit.map_or(f32::NAN, |hit| hit.t)));
@@ -231,6 +232,29 @@ impl<'a> Bundle<'a> {
 }
 
 impl Nearest {
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    fn none(packet: &Packet) -> Self {
+        let zero = _mm256_setzero_ps();
+        Self { t: packet.t_max, primitive: _mm256_set1_epi32(NONE as i32), u: zero, v: zero }
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn take_square(&mut self, packet: &Packet, square: &Square) {
+        let zero = _mm256_setzero_ps();
+        let (hit, t) = packet.meet_square(square);
+        self.take_nearer(hit, [t, zero, zero], square.primitive);
+    }
+
+    /// For rays outside.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn take_sphere(&mut self, packet: &Packet, sphere: &Sphere, rules: Rules) {
+        let zero = _mm256_setzero_ps();
+        let (hit, t) = packet.meet_sphere(sphere, sphere_from(sphere, packet.origin), rules);
+        self.take_nearer(hit, [t, zero, zero], sphere.primitive);
+    }
+
     /// Twin of `Hit::take_nearer` in the lanes of `hit`.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
@@ -265,11 +289,31 @@ impl Nearest {
 /// Twin of `Tracer::closest8`.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn closest_hits(tracer: &Tracer<'_>, rays: &[Ray; LANES]) -> [Hit; LANES] {
+    let Tracer { geometry, rules, .. } = tracer;
     let packet = Packet::new(rays);
-    match Bundle::new(&packet, packet.reciprocal(), ALL) {
-        Some(bundle) => bundle.closest_hits(&tracer.geometry, tracer.rules, rays),
-        None => rays.map(|ray| closest_hit(&tracer.geometry, &ray, tracer.rules)),
+    let mut best = Nearest::none(&packet);
+    let reciprocal = packet.reciprocal();
+    if geometry.spheres.len() > FEW || geometry.squares.len() > FEW || rays.iter().any(|ray| ray.inside) {
+        return match Bundle::new(&packet, reciprocal, ALL) {
+            Some(bundle) => bundle.closest_hits::<true>((geometry, *rules), rays, ALL, best),
+            None => rays.map(|ray| closest_hit(geometry, &ray, *rules)),
+        };
     }
+    geometry.squares.iter().for_each(|square| best.take_square(&packet, square));
+    geometry.spheres.iter().for_each(|sphere| best.take_sphere(&packet, sphere, *rules));
+    let (lower, upper) = tracer.mesh;
+    let near = meet(packet.origin, reciprocal, packet.t_min, best.t, (splat3(lower), splat3(upper)));
+    if geometry.triangles.is_empty() || near == 0 {
+        return best.hits();
+    }
+    if let Some(bundle) = Bundle::new(&packet, reciprocal, near) {
+        return bundle.closest_hits::<false>((geometry, *rules), rays, near, best);
+    }
+    let mut hits = best.hits();
+    for lane in lanes(near) {
+        hits[lane] = nearer_hit(geometry, &rays[lane], *rules, 0, hits[lane]);
+    }
+    hits
 }
 
 /// Least and greatest value of some lanes, each in all lanes; `asked` has a bit for each. What is no number does not count.

@@ -234,15 +234,21 @@ impl Packet {
         _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(discriminant, _mm256_setzero_ps())) as u32
     }
 
-    /// Twin of `intersect_sphere` for rays outside.
+    /// Which rays hit a sphere: twin of `intersect_sphere` for rays outside.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     pub(super) fn hits_sphere(&self, sphere: &Sphere, offset: Wide3, c: __m256, rules: Rules) -> u32 {
-        let hit = match rules {
+        _mm256_movemask_ps(self.meet_sphere(sphere, (offset, c), rules).0) as u32
+    }
+
+    /// Hits of a sphere, and where: twin of `intersect_sphere` for rays outside.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    pub(super) fn meet_sphere(&self, sphere: &Sphere, (offset, c): (Wide3, __m256), rules: Rules) -> (__m256, __m256) {
+        match rules {
             Rules::Original => self.sphere_original(offset, c),
             Rules::Repaired => self.sphere_repaired(offset, c, sphere.radius),
-        };
-        _mm256_movemask_ps(hit) as u32
+        }
     }
 
     /// The a, b and discriminant of the original's equation.
@@ -257,13 +263,13 @@ impl Packet {
 
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    fn sphere_original(&self, offset: Wide3, c: __m256) -> __m256 {
+    fn sphere_original(&self, offset: Wide3, c: __m256) -> (__m256, __m256) {
         let zero = _mm256_setzero_ps();
         let two = _mm256_set1_ps(2.0);
         let [a, b, discriminant] = self.discriminant_original(offset, c);
         let real = _mm256_cmp_ps::<_CMP_GE_OQ>(discriminant, zero);
         if _mm256_movemask_ps(real) == 0 {
-            return zero;
+            return (zero, zero);
         }
         let root = _mm256_sqrt_ps(discriminant);
         let (minus_b, two_a) = (_mm256_sub_ps(zero, b), _mm256_mul_ps(two, a));
@@ -271,7 +277,7 @@ impl Packet {
         let far = _mm256_div_ps(_mm256_add_ps(minus_b, root), two_a);
         let t = _mm256_blendv_ps(far, near, _mm256_cmp_ps::<_CMP_GT_OQ>(near, zero));
         let counts = _mm256_cmp_ps::<_CMP_GT_OQ>(t, _mm256_set1_ps(ORIGINAL_EPSILON));
-        _mm256_and_ps(_mm256_and_ps(real, counts), self.between_ends(t))
+        (_mm256_and_ps(_mm256_and_ps(real, counts), self.between_ends(t)), t)
     }
 
     /// The a, half b and discriminant of the repaired equation.
@@ -291,13 +297,13 @@ impl Packet {
 
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    fn sphere_repaired(&self, offset: Wide3, c: __m256, radius: f32) -> __m256 {
+    fn sphere_repaired(&self, offset: Wide3, c: __m256, radius: f32) -> (__m256, __m256) {
         let zero = _mm256_setzero_ps();
         let sign_bit = _mm256_set1_ps(-0.0);
         let [a, half_b, discriminant] = self.discriminant_repaired(offset, radius);
         let real = _mm256_cmp_ps::<_CMP_GE_OQ>(discriminant, zero);
         if _mm256_movemask_ps(real) == 0 {
-            return zero;
+            return (zero, zero);
         }
         let signed_root = _mm256_or_ps(_mm256_sqrt_ps(discriminant), _mm256_and_ps(sign_bit, half_b));
         let q = _mm256_add_ps(half_b, signed_root);
@@ -306,6 +312,6 @@ impl Packet {
         let second = _mm256_and_ps(is_nonzero, _mm256_div_ps(q, a));
         let (near, far) = (_mm256_min_ps(first, second), _mm256_max_ps(first, second));
         let t = _mm256_blendv_ps(far, near, _mm256_cmp_ps::<_CMP_GT_OQ>(near, self.t_min));
-        _mm256_and_ps(real, self.between_ends(t))
+        (_mm256_and_ps(real, self.between_ends(t)), t)
     }
 }

@@ -11,9 +11,10 @@ use lightcuts_kernel::intersect::{intersect_sphere, intersect_square, min_determ
 use lightcuts_kernel::ray::{Hit, Ray, SLAB_SLACK, safe_reciprocal};
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, MAX_LEVELS, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
-    __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NLT_UQ, _mm256_add_ps, _mm256_and_ps,
-    _mm256_andnot_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_fmsub_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps,
-    _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_storeu_ps, _mm256_sub_ps,
+    __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NLT_UQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_ps,
+    _mm256_and_ps, _mm256_andnot_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_fmsub_ps, _mm256_loadu_ps, _mm256_max_ps,
+    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_storeu_ps,
+    _mm256_sub_ps,
 };
 use std::mem::MaybeUninit;
 
@@ -250,6 +251,16 @@ pub(super) fn block<'a>(geometry: &Geometry<'a>, node: &BvhNode, lane: usize) ->
     &geometry.triangles[(node.child[lane % LANES] & ChildRef::INDEX) as usize]
 }
 
+/// Fetches a node that will be visited later: until then there is something else to do.
+#[inline]
+fn prefetch(geometry: &Geometry<'_>, index: u32) {
+    let node = geometry.nodes.as_ptr().wrapping_add(index as usize).cast::<i8>();
+    for line in 0..4 {
+        // SAFETY: fetching changes nothing, wherever the address points.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(node.wrapping_add(64 * line)) };
+    }
+}
+
 /// Whether anything lies between the ray's ends, under a node, 0 for everything. `OTHERS` says whether spheres and squares
 /// count.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
@@ -278,6 +289,9 @@ pub(super) fn any_hit<const OTHERS: bool>(geometry: &Geometry<'_>, ray: &Ray, ru
         if !is_last {
             let rest = inner & (inner - 1);
             stack.push_if((index, rest), rest != 0);
+            for lane in lanes(rest) {
+                prefetch(geometry, node.child[lane]);
+            }
             index = node.child[inner.trailing_zeros() as usize % LANES];
             node = &geometry.nodes[index as usize];
         }
