@@ -149,7 +149,7 @@ pub(super) fn evaluate(
     let zero = _mm256_setzero_ps();
     let one = _mm256_set1_ps(1.0);
     let (point, normal, diffuse) = (splat3(at.point), splat3(at.normal), splat3(at.diffuse));
-    let source = Source::new(&tracer.geometry, blocks.walls, point);
+    let source = Source::new(tracer, blocks.walls, point);
     let mut batch = Batch(Stack::new());
     let mut sums = [zero; 3];
     let mut gathered = Gathered { color: Vec3::ZERO, chosen: 0, shadow_rays: 0 };
@@ -285,7 +285,7 @@ pub(super) fn evaluate_together(
 ) -> [Gathered; LANES] {
     let zero = _mm256_setzero_ps();
     let points = Points::new(at);
-    let source = Source::new(&tracer.geometry, blocks.walls, points.point);
+    let source = Source::new(tracer, blocks.walls, points.point);
     let mut batch = Batch(Stack::new());
     // By lane of the VPLs, as one point sums them.
     let mut sums = [[zero; 3]; LANES];

@@ -9,10 +9,7 @@ use super::avx2_packet::{Packet, height_of, sphere_from};
 use super::avx2_trace::{Stack, Wide3, lanes, splat3};
 use super::tracer::Tracer;
 use super::walls::{FEW, Sides, Walls};
-use lightcuts_world::bvh::Geometry;
-use std::arch::x86_64::{
-    __m256, _CMP_GE_OQ, _CMP_LE_OQ, _mm256_and_ps, _mm256_cmp_ps, _mm256_movemask_ps, _mm256_setzero_ps,
-};
+use std::arch::x86_64::{__m256, _CMP_GE_OQ, _CMP_LE_OQ, _mm256_cmp_ps, _mm256_movemask_ps, _mm256_setzero_ps};
 
 /// Packets that are collected: what is kept of them stays in the nearest cache.
 pub(super) const MOST: usize = 32;
@@ -41,7 +38,8 @@ pub(super) struct Shadow {
 
 impl Source {
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    pub(super) fn new(geometry: &Geometry<'_>, walls: &Walls, origin: Wide3) -> Self {
+    pub(super) fn new(tracer: &Tracer<'_>, walls: &Walls, origin: Wide3) -> Self {
+        let Tracer { geometry, mesh: (lower, upper), .. } = tracer;
         let zero = _mm256_setzero_ps();
         let mut source = Self { origin, spheres: Stack::new(), heights: Stack::new(), sides: Sides::default() };
         for sphere in geometry.spheres.iter().take(FEW) {
@@ -55,12 +53,14 @@ impl Source {
             source.sides.front |= u32::from(all(_mm256_cmp_ps::<_CMP_LE_OQ>(height, zero))) << index;
             source.sides.back |= u32::from(all(_mm256_cmp_ps::<_CMP_GE_OQ>(height, zero))) << index;
         }
-        let (lower, upper) = (splat3(walls.lower), splat3(walls.upper));
-        let within = |axis: usize| {
-            let above = _mm256_cmp_ps::<_CMP_GE_OQ>(origin[axis], lower[axis]);
-            _mm256_and_ps(above, _mm256_cmp_ps::<_CMP_LE_OQ>(origin[axis], upper[axis]))
-        };
-        if !all(_mm256_and_ps(within(0), _mm256_and_ps(within(1), within(2)))) {
+        let is_above = |axis: usize, bound: Wide3| all(_mm256_cmp_ps::<_CMP_GE_OQ>(origin[axis], bound[axis]));
+        let is_below = |axis: usize, bound: Wide3| all(_mm256_cmp_ps::<_CMP_LE_OQ>(origin[axis], bound[axis]));
+        let (least, greatest) = (splat3(walls.lower), splat3(walls.upper));
+        for axis in 0..3 {
+            source.sides.front |= u32::from(is_below(axis, splat3(*lower))) << (FEW + axis);
+            source.sides.front |= u32::from(is_above(axis, splat3(*upper))) << (FEW + 3 + axis);
+        }
+        if !(0..3).all(|axis| is_above(axis, least) && is_below(axis, greatest)) {
             source.sides = Sides::default();
         }
         source
@@ -78,9 +78,8 @@ impl Source {
             }
             return;
         }
-        let every = (1 << geometry.squares.len()) - 1;
         for shadow in shadows.iter_mut() {
-            for index in lanes(every & !self.sides.shared(shadow.ends)) {
+            for index in lanes(self.sides.crossed(shadow.ends, geometry.squares.len())) {
                 let height = self.heights.as_slice()[index];
                 shadow.open &= !packet(shadow).hits_square(&geometry.squares[index], height);
             }
@@ -97,7 +96,9 @@ impl Source {
         }
         if !geometry.triangles.is_empty() {
             for shadow in shadows {
-                shadow.open = packet(shadow).miss_mesh(tracer, shadow.open);
+                if self.sides.may_meet_mesh(shadow.ends) {
+                    shadow.open = packet(shadow).miss_mesh(tracer, shadow.open);
+                }
             }
         }
     }

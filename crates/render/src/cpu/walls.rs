@@ -1,13 +1,13 @@
-//! Squares that a shadow ray need not be tested against, because both of its ends lie on the same side of them.
+//! What a shadow ray need not be tested against: squares that have both of its ends on one side, and the mesh where both lie
+//! beyond one face of its box.
 //!
-//! The thesis' scenes are rooms of squares: nothing in a room is behind its walls, and five tests per ray would find that out
-//! again and again.
+//! The thesis' scenes are rooms of squares around a mesh: nothing in a room is behind its walls, and five tests per ray would
+//! find that out again and again.
 
 use super::tracer::Tracer;
 use crate::light_node::{LANES, VplBlock};
 use crate::light_tree::LightTree;
 use glam::{DVec3, Vec3};
-use lightcuts_kernel::intersect::Square;
 use lightcuts_world::bvh::Geometry;
 use rayon::prelude::*;
 
@@ -17,7 +17,10 @@ pub(crate) const FEW: usize = 16;
 /// Relative error of a difference, a product and the sum of three of them in single precision, with some to spare.
 const ROUNDING: f64 = 5.0 * (f32::EPSILON / 2.0) as f64;
 
-/// On which side of the first squares something lies, a bit each; in neither mask where that is not sure.
+/// On which side of some planes something lies, a bit each; in neither mask where that is not sure.
+///
+/// The planes are those of the first squares and, from [`FEW`] on, the faces of the mesh's box with normals outwards: the lower one
+/// of each axis, then the upper ones.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Sides {
     /// Where the normal points to.
@@ -26,13 +29,23 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
-    /// Squares that have both on the same side.
-    pub(crate) fn shared(self, other: Self) -> u32 {
+    /// Planes that have both on the same side.
+    fn shared(self, other: Self) -> u32 {
         self.front & other.front | self.back & other.back
+    }
+
+    /// Of so many squares those that a ray between both may cross.
+    pub(crate) fn crossed(self, other: Self, squares: usize) -> u32 {
+        ((1 << squares) - 1) & !self.shared(other)
+    }
+
+    /// Whether a ray between both may meet the mesh.
+    pub(crate) fn may_meet_mesh(self, other: Self) -> bool {
+        (self.front & other.front) >> FEW == 0
     }
 }
 
-/// On which sides of the squares the VPLs of every block lie.
+/// On which sides the VPLs of every block lie.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Walls {
     blocks: Vec<Sides>,
@@ -44,16 +57,13 @@ pub(crate) struct Walls {
 impl Walls {
     /// For points on the surfaces of a tracer's geometry.
     pub(crate) fn new(tracer: &Tracer<'_>, tree: &LightTree) -> Self {
-        let geometry = &tracer.geometry;
-        if geometry.squares.is_empty() || geometry.squares.len() > FEW {
-            return Self { blocks: vec![Sides::default(); tree.blocks.len()], ..Self::default() };
-        }
-        let (lower, upper) = surroundings(geometry);
+        let (lower, upper) = surroundings(&tracer.geometry);
+        let planes = planes(tracer);
         let sides = |(number, block): (usize, &VplBlock)| {
             let lanes = tree.lanes(number as u32);
-            let all = (1 << geometry.squares.len()) - 1;
-            (0..LANES).filter(|lane| lanes >> lane & 1 == 1).fold(Sides { front: all, back: all }, |sides, lane| {
-                let vpl = sides_of(geometry.squares, block.vpl(lane).position, (lower, upper));
+            let all = Sides { front: u32::MAX, back: u32::MAX };
+            (0..LANES).filter(|lane| lanes >> lane & 1 == 1).fold(all, |sides, lane| {
+                let vpl = sides_of(&planes, block.vpl(lane).position, (lower, upper));
                 Sides { front: sides.front & vpl.front, back: sides.back & vpl.back }
             })
         };
@@ -63,6 +73,20 @@ impl Walls {
     pub(crate) fn of_block(&self, block: u32) -> Sides {
         self.blocks[block as usize]
     }
+}
+
+/// A plane: its bit, a point, and its normal.
+type Plane = (u32, Vec3, Vec3);
+
+/// The planes of all squares, if they are few, and of the mesh's faces, if there is one.
+fn planes(tracer: &Tracer<'_>) -> Vec<Plane> {
+    let Tracer { geometry, mesh: (lower, upper), .. } = tracer;
+    let squares = if geometry.squares.len() > FEW { &[] } else { geometry.squares };
+    let squares = squares.iter().zip(0..).map(|(square, bit)| (bit, square.center, square.normal));
+    let faces = [(*lower, Vec3::NEG_ONE), (*upper, Vec3::ONE)].into_iter().zip(0..).flat_map(|((corner, sign), k)| {
+        [0, 1, 2].map(|axis| (FEW as u32 + 3 * k + axis, corner, Vec3::AXES[axis as usize] * sign))
+    });
+    squares.chain(faces.filter(|_| !geometry.triangles.is_empty())).collect()
 }
 
 /// A box around everything, with some room for how points on surfaces are rounded.
@@ -75,22 +99,22 @@ fn surroundings(geometry: &Geometry<'_>) -> (Vec3, Vec3) {
     (lower - room, upper + room)
 }
 
-/// On which sides of the squares a VPL lies so far that no rounding lets `intersect_square` find a hit from a point in a box
-/// towards it, provided that the point's height is not of the other sign.
+/// On which sides of planes a VPL lies so far that no rounding lets a ray from a point in a box towards it cross them, provided
+/// that the point's height above the plane is not of the other sign.
 ///
-/// With the heights p and v of point and VPL along the normal, seen from the square, a hit is at t = p / (p - v): at 1 or
-/// beyond, or before 0, where v has the sign of p. It is computed from p and from the slope p - v; if |v| is more than their
-/// errors together, what is rounded keeps that order.
-fn sides_of(squares: &[Square], position: Vec3, (lower, upper): (Vec3, Vec3)) -> Sides {
+/// With the heights p and v of point and VPL along the normal, seen from the plane, it is crossed at t = p / (p - v): at 1 or
+/// beyond, or before 0, where v has the sign of p. `intersect_square` computes that from p and from the slope p - v; if |v| is
+/// more than their errors together, what is rounded keeps that order. A box's face is met at a t that is rounded no worse.
+fn sides_of(planes: &[Plane], position: Vec3, (lower, upper): (Vec3, Vec3)) -> Sides {
     let mut sides = Sides::default();
     let position = position.as_dvec3();
     let farthest = |from: DVec3| (from - lower.as_dvec3()).abs().max((from - upper.as_dvec3()).abs());
-    for (index, square) in squares.iter().enumerate() {
-        let (center, normal) = (square.center.as_dvec3(), square.normal.as_dvec3());
-        let error = ROUNDING * normal.abs().dot(farthest(center) + farthest(position)) + f64::from(f32::MIN_POSITIVE);
-        let height = (position - center).dot(normal);
-        sides.front |= u32::from(height > error) << index;
-        sides.back |= u32::from(height < -error) << index;
+    for &(bit, point, normal) in planes {
+        let (point, normal) = (point.as_dvec3(), normal.as_dvec3());
+        let error = ROUNDING * normal.abs().dot(farthest(point) + farthest(position)) + f64::from(f32::MIN_POSITIVE);
+        let height = (position - point).dot(normal);
+        sides.front |= u32::from(height > error) << bit;
+        sides.back |= u32::from(height < -error) << bit;
     }
     sides
 }
@@ -101,7 +125,7 @@ mod tests {
     use crate::cpu::Simd;
     use crate::light_tree::TreeLayout;
     use lightcuts_kernel::Rules;
-    use lightcuts_kernel::intersect::intersect_square;
+    use lightcuts_kernel::intersect::{Square, intersect_square};
     use lightcuts_kernel::light::Vpl;
     use lightcuts_kernel::ray::{shadow_ray, spawn_epsilon};
     use lightcuts_kernel::rng::random4;
@@ -134,12 +158,14 @@ mod tests {
             wall(Vec3::new(0.0, 0.0, -200.0), Vec3::Z, Vec3::Y),
             wall(Vec3::new(3.0, 7.0, -11.0), askew, askew.any_orthonormal_vector()),
         ];
+        let planes: Vec<Plane> =
+            squares.iter().zip(0..).map(|(square, bit)| (bit, square.center, square.normal)).collect();
         let bounds = (Vec3::splat(-420.0), Vec3::splat(420.0));
         let (mut claimed, mut hits) = (0, 0);
         for k in 0..400_000 {
             let from = near(&squares[(k % 4) as usize], k);
             let to = near(&squares[(k / 4 % 4) as usize], k + 1_000_000);
-            let ends = sides_of(&squares, to, bounds);
+            let ends = sides_of(&planes, to, bounds);
             for rules in [Rules::Original, Rules::Repaired] {
                 let ray = shadow_ray(rules, from, to - from, spawn_epsilon(rules, from, 300.0));
                 for (index, square) in squares.iter().enumerate() {
