@@ -1,10 +1,10 @@
 //! Eight shadow rays at a time, from one point or from neighbours. Twin of `lightcuts_world::bvh::any_hit` for each of them,
 //! same answers.
 //!
-//! The thesis' rooms have few spheres and squares around a mesh. These are tested without their boxes, eight rays at once, with
-//! what depends on where rays begin alone computed once for all rays from there; a square is mostly told by its plane. What is
-//! left and meets the box of the mesh goes down the hierarchy as a bundle if all rays' directions have the same signs, as those of
-//! neighbours to one light mostly do, else ray by ray.
+//! The thesis' rooms have few spheres and squares around a mesh. These are tested without their boxes, eight rays at once; a
+//! square is mostly told by its plane. What is left and meets the box of the mesh goes down the hierarchy as a bundle if all rays'
+//! directions have the same signs, as those of neighbours to one light mostly do, else ray by ray. Many packets from the same
+//! places are for `avx2_shadows`.
 
 #![allow(unsafe_code)]
 
