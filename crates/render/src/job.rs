@@ -22,7 +22,7 @@ use lightcuts_kernel::rng::stream;
 use lightcuts_world::World;
 
 /// Edge of a tile in pixels.
-pub(crate) const TILE_SIZE: u32 = 16;
+const TILE_SIZE: u32 = 16;
 
 /// Purposes of random numbers; each has its own stream.
 const SHIFTS: u32 = 1;

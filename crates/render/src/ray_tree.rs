@@ -115,7 +115,7 @@ impl RayTree {
     fn sum(&mut self) {
         for &k in self.active.iter().rev() {
             let Some(slot) = &self.slots[k as usize] else { continue };
-            let (mut color, found_any) = (slot.color, slot.found.is_some());
+            let (mut color, is_hit) = (slot.color, slot.found.is_some());
             for (factor, child) in [(slot.reflection, 2 * k + 1), (slot.refraction, 2 * k + 2)] {
                 if factor > 0.0
                     && let Some(child) = &self.slots[child as usize]
@@ -124,7 +124,7 @@ impl RayTree {
                 }
             }
             if let Some(slot) = &mut self.slots[k as usize] {
-                slot.color = if found_any { color.min(Vec3::ONE) } else { color };
+                slot.color = if is_hit { color.min(Vec3::ONE) } else { color };
             }
         }
     }

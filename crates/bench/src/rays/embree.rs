@@ -28,6 +28,7 @@ struct RayHit<const N: usize> {
     t_near: [f32; N],
     direction: [[f32; N]; 3],
     time: [f32; N],
+    /// Afterwards where the hit is; before everything where something hides the ray.
     t_far: [f32; N],
     mask: [u32; N],
     id: [u32; N],
@@ -57,11 +58,6 @@ impl<const N: usize> RayHit<N> {
             geometry: [NONE; N],
             instance: [[NONE; N]; 4],
         }
-    }
-
-    /// Where rays end now: at their hits; before everything where something hides them.
-    fn ends(&self) -> [f32; N] {
-        self.t_far
     }
 }
 
@@ -143,7 +139,7 @@ impl Embree {
         let mut ray = RayHit::new(&[*ray]);
         // SAFETY: the scene is complete, and the ray has room for a hit.
         unsafe { trace(self.scene, &raw mut ray, null_mut()) };
-        ray.ends()[0]
+        ray.t_far[0]
     }
 
     fn eight(&self, trace: Trace8, rays: &[Ray; 8]) -> [f32; 8] {
@@ -153,7 +149,7 @@ impl Embree {
         let mut rays = RayHit::new(rays);
         // SAFETY: as for one.
         unsafe { trace(ALL.0.as_ptr(), self.scene, &raw mut rays, null_mut()) };
-        rays.ends()
+        rays.t_far
     }
 }
 

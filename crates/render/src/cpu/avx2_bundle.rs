@@ -8,21 +8,21 @@
 
 use super::avx2_packet::{Packet, meet, sphere_from};
 use super::avx2_trace::{
-    Stack, Wide3, WideRay, any_hit, block, closest_hit, cross_triangles, lanes, load, nearer_hit, other_hit, splat3,
-    store,
+    Wide3, WideRay, any_hit, block, closest_hit, cross_triangles, lanes, load, nearer_hit, other_hit, splat_lane,
+    splat3, spread, store,
 };
+use super::stack::Stack;
 use super::tracer::Tracer;
 use super::walls::FEW;
-use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square, min_determinant};
 use lightcuts_kernel::ray::{Hit, NONE, Ray, SLAB_SLACK};
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
-    __m256, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_and_si256, _mm256_blendv_ps,
-    _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_cmpgt_epi32, _mm256_cvtss_f32,
-    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_permute_ps,
-    _mm256_permute2f128_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32, _mm256_setzero_ps, _mm256_sub_ps,
+    __m256, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_blendv_ps, _mm256_castps_si256,
+    _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpgt_epi32, _mm256_cvtss_f32, _mm256_max_ps, _mm256_min_ps,
+    _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_permute_ps, _mm256_permute2f128_ps, _mm256_set1_epi32,
+    _mm256_set1_ps, _mm256_setzero_ps, _mm256_sub_ps,
 };
 
 /// So few rays are quicker alone.
@@ -108,8 +108,8 @@ impl<'a> Bundle<'a> {
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn intersect(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
-        let at = |of: &[[f32; LANES]; 3]| splat3(Vec3::new(of[0][lane], of[1][lane], of[2][lane]));
-        let triangle = [at(&block.corner), at(&block.edge1), at(&block.edge2)];
+        let triangle =
+            [splat_lane(&block.corner, lane), splat_lane(&block.edge1, lane), splat_lane(&block.edge2, lane)];
         let (inside, [t, u, v]) = cross_triangles(self.packet.origin, self.packet.direction, triangle, least);
         (_mm256_and_ps(inside, self.packet.between_ends(t)), [t, u, v])
     }
@@ -320,9 +320,8 @@ pub(super) fn closest_hits(tracer: &Tracer<'_>, rays: &[Ray; LANES]) -> [Hit; LA
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn range(values: __m256, asked: u32) -> (__m256, __m256) {
-    let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-    let counts = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(asked as i32), bits), bits);
-    let of_asked = |none: f32| _mm256_blendv_ps(_mm256_set1_ps(none), values, _mm256_castsi256_ps(counts));
+    let counts = spread(asked);
+    let of_asked = |none: f32| _mm256_blendv_ps(_mm256_set1_ps(none), values, counts);
     // The second one of both operands is the result where either is no number.
     let least = _mm256_min_ps(of_asked(f32::INFINITY), _mm256_set1_ps(f32::INFINITY));
     let greatest = _mm256_max_ps(of_asked(f32::NEG_INFINITY), _mm256_set1_ps(f32::NEG_INFINITY));

@@ -3,8 +3,9 @@
 #![allow(unsafe_code)]
 
 use super::avx2_shadows::{MOST, Shadow, Source};
-use super::avx2_trace::{Stack, Wide3, dot, load, load3, splat3, store, sub};
+use super::avx2_trace::{Wide3, dot, load, load3, splat_lane, splat3, spread, store, sub};
 use super::gather::{Blocks, Candidates, Decisions, Gathered, Receiver};
+use super::stack::Stack;
 use super::tracer::Tracer;
 use crate::light_node::{LANES, LightNode, VplBlock};
 use glam::Vec3;
@@ -12,9 +13,8 @@ use lightcuts_kernel::Rules;
 use lightcuts_kernel::light_tree::BOUND_MARGIN;
 use lightcuts_kernel::ray::ORIGINAL_EPSILON;
 use std::arch::x86_64::{
-    __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps,
-    _mm256_blendv_ps, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_div_ps, _mm256_max_ps,
-    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32,
+    __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_blendv_ps,
+    _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps,
     _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
 
@@ -30,14 +30,6 @@ fn shadow_ends(rules: Rules, to_light: Wide3, epsilon: __m256) -> (__m256, __m25
             (relative, _mm256_sub_ps(one, relative))
         }
     }
-}
-
-/// All bits of the lanes that are set in a mask.
-#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-fn spread(mask: u32) -> __m256 {
-    let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-    let chosen = _mm256_and_si256(_mm256_set1_epi32(mask as i32), bits);
-    _mm256_castsi256_ps(_mm256_cmpeq_epi32(chosen, bits))
 }
 
 /// Decides for every cluster of a node; twin of `kernel::light_tree::decide`, same bits.
@@ -99,6 +91,31 @@ struct Incidence {
     facing: u32,
 }
 
+impl Incidence {
+    /// Adds the light of VPLs that are visible, as a mask; twin of `phong_vpl`.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn add(&self, sums: &mut Wide3, colors: Wide3, attenuation: __m256, diffuse: Wide3, visible: __m256) {
+        let emission = _mm256_mul_ps(attenuation, self.cos_phi);
+        for channel in 0..3 {
+            let reflected = _mm256_mul_ps(_mm256_mul_ps(colors[channel], diffuse[channel]), self.cos_theta);
+            let color = _mm256_min_ps(_mm256_mul_ps(reflected, emission), _mm256_set1_ps(1.0));
+            sums[channel] = _mm256_add_ps(sums[channel], _mm256_and_ps(color, visible));
+        }
+    }
+}
+
+/// Squared distances, and the cosines at the points and at the VPLs; twin of `vpl_incidence`.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn cosines(to_light: Wide3, normal: Wide3, direction: Wide3) -> (__m256, [__m256; 2]) {
+    let dist_sq = dot(to_light, to_light);
+    let reciprocal = _mm256_div_ps(_mm256_set1_ps(1.0), _mm256_sqrt_ps(dist_sq));
+    let [x, y, z] = to_light;
+    let unit = [_mm256_mul_ps(x, reciprocal), _mm256_mul_ps(y, reciprocal), _mm256_mul_ps(z, reciprocal)];
+    (dist_sq, [dot(normal, unit), _mm256_sub_ps(_mm256_setzero_ps(), dot(direction, unit))])
+}
+
 /// What is still to be traced. First the cosines of many, then their shadow rays, then their light: while a processor waits for one
 /// root and quotient it can begin with the next few, as long as little else lies between them.
 struct Batch(Stack<Incidence, MOST>);
@@ -137,7 +154,7 @@ impl Batch {
     }
 }
 
-/// What the chosen VPLs add; twin of `vpl_incidence` and `phong_vpl`.
+/// What the chosen VPLs add; twin of the plain `evaluate`.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn evaluate(
     tracer: &Tracer<'_>,
@@ -147,7 +164,6 @@ pub(super) fn evaluate(
     at: &Receiver,
 ) -> Gathered {
     let zero = _mm256_setzero_ps();
-    let one = _mm256_set1_ps(1.0);
     let (point, normal, diffuse) = (splat3(at.point), splat3(at.normal), splat3(at.diffuse));
     let source = Source::new(tracer, blocks.walls, point);
     let mut batch = Batch(Stack::new());
@@ -157,24 +173,14 @@ pub(super) fn evaluate(
         let aim = |incidence: &Incidence| sub(load3(&blocks.vpls[incidence.block as usize].position), point);
         batch.trace((tracer, &source, blocks), _mm256_set1_ps(at.epsilon), aim, |incidence, visible| {
             let block = &blocks.vpls[incidence.block as usize];
-            let emission = _mm256_mul_ps(load(&block.attenuation), incidence.cos_phi);
-            let colors = load3(&block.diffuse);
-            for channel in 0..3 {
-                let reflected = _mm256_mul_ps(_mm256_mul_ps(colors[channel], diffuse[channel]), incidence.cos_theta);
-                let color = _mm256_min_ps(_mm256_mul_ps(reflected, emission), one);
-                sums[channel] = _mm256_add_ps(sums[channel], _mm256_and_ps(color, visible));
-            }
+            let (colors, attenuation) = (load3(&block.diffuse), load(&block.attenuation));
+            incidence.add(&mut sums, colors, attenuation, diffuse, visible);
         });
     };
     for candidates in candidates {
         let block = &blocks.vpls[candidates.block as usize];
         let to_light = sub(load3(&block.position), point);
-        let dist_sq = dot(to_light, to_light);
-        let reciprocal = _mm256_div_ps(one, _mm256_sqrt_ps(dist_sq));
-        let [x, y, z] = to_light;
-        let unit = [_mm256_mul_ps(x, reciprocal), _mm256_mul_ps(y, reciprocal), _mm256_mul_ps(z, reciprocal)];
-        let cos_theta = dot(normal, unit);
-        let cos_phi = _mm256_sub_ps(zero, dot(load3(&block.direction), unit));
+        let (dist_sq, [cos_theta, cos_phi]) = cosines(to_light, normal, load3(&block.direction));
         let relevant = match threshold {
             Some(threshold) if !candidates.certain => relevant(load(&block.intensity), cos_phi, dist_sq, threshold),
             _ => u32::MAX,
@@ -200,14 +206,6 @@ fn facing(cos_theta: __m256, cos_phi: __m256) -> u32 {
     let zero = _mm256_setzero_ps();
     let is_positive = |cosine: __m256| _mm256_cmp_ps::<_CMP_GT_OQ>(cosine, zero);
     _mm256_movemask_ps(_mm256_and_ps(is_positive(cos_theta), is_positive(cos_phi))) as u32
-}
-
-/// The vector of one lane, in all lanes.
-#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-#[inline]
-fn splat_lane(of: &[[f32; LANES]; 3], lane: usize) -> Wide3 {
-    let lane = lane % LANES;
-    splat3(Vec3::new(of[0][lane], of[1][lane], of[2][lane]))
 }
 
 /// Points that gather together, component by component; the last one fills what is left of the eight.
@@ -255,12 +253,7 @@ impl Points {
     ) -> (u32, Incidence) {
         let block = &blocks.vpls[number as usize];
         let to_light = self.to_light(block, lane);
-        let dist_sq = dot(to_light, to_light);
-        let reciprocal = _mm256_div_ps(_mm256_set1_ps(1.0), _mm256_sqrt_ps(dist_sq));
-        let [x, y, z] = to_light;
-        let unit = [_mm256_mul_ps(x, reciprocal), _mm256_mul_ps(y, reciprocal), _mm256_mul_ps(z, reciprocal)];
-        let cos_theta = dot(self.normal, unit);
-        let cos_phi = _mm256_sub_ps(_mm256_setzero_ps(), dot(splat_lane(&block.direction, lane), unit));
+        let (dist_sq, [cos_theta, cos_phi]) = cosines(to_light, self.normal, splat_lane(&block.direction, lane));
         let chosen = match tested {
             Some((threshold, certain)) => {
                 let intensity = _mm256_set1_ps(block.intensity[lane % LANES]);
@@ -293,13 +286,8 @@ pub(super) fn evaluate_together(
         let aim = |incidence: &Incidence| points.to_light(&blocks.vpls[incidence.block as usize], incidence.lane);
         batch.trace((tracer, &source, blocks), points.epsilon, aim, |incidence, visible| {
             let (block, lane) = (&blocks.vpls[incidence.block as usize], incidence.lane % LANES);
-            let emission = _mm256_mul_ps(_mm256_set1_ps(block.attenuation[lane]), incidence.cos_phi);
-            for (channel, sum) in sums[lane].iter_mut().enumerate() {
-                let color = _mm256_set1_ps(block.diffuse[channel][lane]);
-                let reflected = _mm256_mul_ps(_mm256_mul_ps(color, points.diffuse[channel]), incidence.cos_theta);
-                let color = _mm256_min_ps(_mm256_mul_ps(reflected, emission), _mm256_set1_ps(1.0));
-                *sum = _mm256_add_ps(*sum, _mm256_and_ps(color, visible));
-            }
+            let (colors, attenuation) = (splat_lane(&block.diffuse, lane), _mm256_set1_ps(block.attenuation[lane]));
+            incidence.add(&mut sums[lane], colors, attenuation, points.diffuse, visible);
         });
     };
     let (mut chosen, mut shadow_rays) = ([0_u32; LANES], [0_u32; LANES]);

@@ -63,8 +63,7 @@ pub(super) fn any_hits(tracer: &Tracer<'_>, packet: &Packet, asked: u32) -> u32 
         open &= !packet.hits_square(square, height_of(square, packet.origin));
     }
     for sphere in geometry.spheres {
-        let (offset, c) = sphere_from(sphere, packet.origin);
-        open &= !packet.hits_sphere(sphere, offset, c, *rules);
+        open &= !packet.hits_sphere(sphere, sphere_from(sphere, packet.origin), *rules);
     }
     asked & !packet.miss_mesh(tracer, open)
 }
@@ -226,7 +225,7 @@ impl Packet {
     /// Rays whose whole lines meet a sphere, as [`Packet::hits_sphere`] finds first.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    pub(super) fn meets_sphere(&self, sphere: &Sphere, offset: Wide3, c: __m256, rules: Rules) -> u32 {
+    pub(super) fn line_meets_sphere(&self, sphere: &Sphere, (offset, c): (Wide3, __m256), rules: Rules) -> u32 {
         let discriminant = match rules {
             Rules::Original => self.discriminant_original(offset, c)[2],
             Rules::Repaired => self.discriminant_repaired(offset, sphere.radius)[2],
@@ -237,8 +236,8 @@ impl Packet {
     /// Which rays hit a sphere: twin of `intersect_sphere` for rays outside.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    pub(super) fn hits_sphere(&self, sphere: &Sphere, offset: Wide3, c: __m256, rules: Rules) -> u32 {
-        _mm256_movemask_ps(self.meet_sphere(sphere, (offset, c), rules).0) as u32
+    pub(super) fn hits_sphere(&self, sphere: &Sphere, from: (Wide3, __m256), rules: Rules) -> u32 {
+        _mm256_movemask_ps(self.meet_sphere(sphere, from, rules).0) as u32
     }
 
     /// Hits of a sphere, and where: twin of `intersect_sphere` for rays outside.

@@ -6,7 +6,8 @@
 #![allow(unsafe_code)]
 
 use super::avx2_packet::{Packet, height_of, sphere_from};
-use super::avx2_trace::{Stack, Wide3, lanes, splat3};
+use super::avx2_trace::{Wide3, lanes, splat3};
+use super::stack::Stack;
 use super::tracer::Tracer;
 use super::walls::{FEW, Sides, Walls};
 use std::arch::x86_64::{__m256, _CMP_GE_OQ, _CMP_LE_OQ, _mm256_cmp_ps, _mm256_movemask_ps, _mm256_setzero_ps};
@@ -84,14 +85,14 @@ impl Source {
                 shadow.open &= !packet(shadow).hits_square(&geometry.squares[index], height);
             }
         }
-        for (sphere, &(offset, c)) in geometry.spheres.iter().zip(self.spheres.as_slice()) {
+        for (sphere, &from) in geometry.spheres.iter().zip(self.spheres.as_slice()) {
             let mut met = Stack::<usize, MOST>::new();
             for (index, shadow) in shadows.iter().enumerate() {
-                met.push_if(index, packet(shadow).meets_sphere(sphere, offset, c, *rules) & shadow.open != 0);
+                met.push_if(index, packet(shadow).line_meets_sphere(sphere, from, *rules) & shadow.open != 0);
             }
             for &index in met.as_slice() {
                 let shadow = &mut shadows[index];
-                shadow.open &= !packet(shadow).hits_sphere(sphere, offset, c, *rules);
+                shadow.open &= !packet(shadow).hits_sphere(sphere, from, *rules);
             }
         }
         if !geometry.triangles.is_empty() {

@@ -6,17 +6,17 @@
 
 #![allow(unsafe_code)]
 
+use super::stack::Stack;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{intersect_sphere, intersect_square, min_determinant};
 use lightcuts_kernel::ray::{Hit, Ray, SLAB_SLACK, safe_reciprocal};
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, MAX_LEVELS, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NLT_UQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_ps,
-    _mm256_and_ps, _mm256_andnot_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_fmsub_ps, _mm256_loadu_ps, _mm256_max_ps,
-    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_storeu_ps,
-    _mm256_sub_ps,
+    _mm256_and_ps, _mm256_and_si256, _mm256_andnot_ps, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32,
+    _mm256_div_ps, _mm256_fmsub_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps,
+    _mm256_set1_epi32, _mm256_set1_ps, _mm256_setr_epi32, _mm256_setzero_ps, _mm256_storeu_ps, _mm256_sub_ps,
 };
-use std::mem::MaybeUninit;
 
 /// Eight lanes from memory.
 #[target_feature(enable = "avx2")]
@@ -45,6 +45,23 @@ pub(super) fn load3(lanes: &[[f32; LANES]; 3]) -> Wide3 {
 #[target_feature(enable = "avx2")]
 pub(super) fn splat3(v: glam::Vec3) -> Wide3 {
     [_mm256_set1_ps(v.x), _mm256_set1_ps(v.y), _mm256_set1_ps(v.z)]
+}
+
+/// The vector of one lane, in all lanes.
+#[target_feature(enable = "avx2")]
+#[inline]
+pub(super) fn splat_lane(of: &[[f32; LANES]; 3], lane: usize) -> Wide3 {
+    let lane = lane % LANES;
+    splat3(glam::Vec3::new(of[0][lane], of[1][lane], of[2][lane]))
+}
+
+/// All bits of the lanes that are set in a mask.
+#[target_feature(enable = "avx2")]
+#[inline]
+pub(super) fn spread(mask: u32) -> __m256 {
+    let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    let chosen = _mm256_and_si256(_mm256_set1_epi32(mask as i32), bits);
+    _mm256_castsi256_ps(_mm256_cmpeq_epi32(chosen, bits))
 }
 
 /// In the order of the plain dot product: (x x + y y) + z z.
@@ -174,64 +191,6 @@ impl WideRay {
         let before = _mm256_cmp_ps::<_CMP_LT_OQ>(t, self.t_max);
         let hit = _mm256_and_ps(inside, _mm256_and_ps(after, before));
         (_mm256_movemask_ps(hit) as u32, [t, u, v])
-    }
-}
-
-/// A stack of fixed size that costs nothing to make: clearing its memory would take longer than most traversals.
-pub(super) struct Stack<T: Copy, const SIZE: usize> {
-    entries: [MaybeUninit<T>; SIZE],
-    pub(super) size: usize,
-}
-
-impl<T: Copy, const SIZE: usize> Stack<T, SIZE> {
-    pub(super) const fn new() -> Self {
-        Self { entries: [const { MaybeUninit::uninit() }; SIZE], size: 0 }
-    }
-
-    /// Without a branch: what is not wanted is written and then forgotten.
-    #[inline]
-    pub(super) fn push_if(&mut self, value: T, is_wanted: bool) {
-        self.entries[self.size] = MaybeUninit::new(value);
-        self.size += usize::from(is_wanted);
-    }
-
-    #[inline]
-    pub(super) fn push(&mut self, value: T) {
-        self.push_if(value, true);
-    }
-
-    pub(super) fn as_slice(&self) -> &[T] {
-        // SAFETY: every entry below the size was written.
-        unsafe { std::slice::from_raw_parts(self.entries.as_ptr().cast(), self.size) }
-    }
-
-    pub(super) fn as_mut_slice(&mut self) -> &mut [T] {
-        // SAFETY: every entry below the size was written.
-        unsafe { std::slice::from_raw_parts_mut(self.entries.as_mut_ptr().cast(), self.size) }
-    }
-
-    #[inline]
-    pub(super) fn pop(&mut self) -> Option<T> {
-        self.size = self.size.checked_sub(1)?;
-        // SAFETY: every entry below the size was written by `push_if`.
-        Some(unsafe { self.entries[self.size].assume_init() })
-    }
-
-    /// Puts a value below those that `is_below` says it is to be below, among the entries from `base` on.
-    #[inline]
-    pub(super) fn insert(&mut self, base: usize, value: T, is_below: impl Fn(&T) -> bool) {
-        let mut place = self.size;
-        while place > base {
-            // SAFETY: every entry below the size was written.
-            let other = unsafe { self.entries[place - 1].assume_init() };
-            if !is_below(&other) {
-                break;
-            }
-            self.entries[place] = MaybeUninit::new(other);
-            place -= 1;
-        }
-        self.entries[place] = MaybeUninit::new(value);
-        self.size += 1;
     }
 }
 

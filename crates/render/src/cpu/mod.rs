@@ -16,6 +16,8 @@ mod avx2_trace;
 mod device;
 mod gather;
 mod lanes;
+#[cfg(target_arch = "x86_64")]
+mod stack;
 mod tracer;
 mod walls;
 

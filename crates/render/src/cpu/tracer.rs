@@ -4,7 +4,7 @@ use super::Simd;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::ray::{Hit, Ray};
-use lightcuts_world::bvh::{Geometry, LANES, any_hit, closest_hit};
+use lightcuts_world::bvh::{BvhNode, Geometry, LANES, any_hit, closest_hit};
 
 /// Traces rays through a geometry by the best means that the machine has. Hits are those of the kernel's plain functions, bit
 /// for bit, whatever the means.
@@ -14,7 +14,7 @@ pub struct Tracer<'a> {
     pub(crate) rules: Rules,
     /// Whether the machine has AVX2 and it is wanted.
     pub(crate) avx2: bool,
-    /// Lower and upper corner of a box around all triangles.
+    /// Lower and upper corner of a box around all triangles, and around whatever is not directly under the root.
     pub(crate) mesh: (Vec3, Vec3),
 }
 
@@ -36,7 +36,7 @@ impl RayLanes {
 impl<'a> Tracer<'a> {
     /// A tracer by `rules`.
     pub fn new(geometry: Geometry<'a>, rules: Rules, simd: Simd) -> Self {
-        Self { geometry, rules, avx2: simd.has_avx2(), mesh: mesh_box(&geometry) }
+        Self { geometry, rules, avx2: simd.has_avx2(), mesh: root_box(&geometry, |root| root.others) }
     }
 
     /// The nearest hit; of equal hits the first in file order.
@@ -100,11 +100,12 @@ impl<'a> Tracer<'a> {
     }
 }
 
-/// A box around all triangles, and around whatever is not directly under the root.
-fn mesh_box(geometry: &Geometry<'_>) -> (Vec3, Vec3) {
-    let Some(root) = geometry.nodes.first() else { return (Vec3::INFINITY, Vec3::NEG_INFINITY) };
-    let children = (0..LANES).filter(|lane| root.others >> lane & 1 == 0).map(|lane| root.child_box(lane));
-    children.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), (lower, upper)| (a.min(lower), b.max(upper)))
+/// A box around the root's children, without those that are left out, a bit each; an inverted one around nothing.
+pub(crate) fn root_box(geometry: &Geometry<'_>, left_out: impl Fn(&BvhNode) -> u32) -> (Vec3, Vec3) {
+    let nothing = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let Some(root) = geometry.nodes.first() else { return nothing };
+    let children = (0..LANES).filter(|lane| left_out(root) >> lane & 1 == 0).map(|lane| root.child_box(lane));
+    children.fold(nothing, |(a, b), (lower, upper)| (a.min(lower), b.max(upper)))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! The thesis' scenes are rooms of squares around a mesh: nothing in a room is behind its walls, and five tests per ray would
 //! find that out again and again.
 
-use super::tracer::Tracer;
+use super::tracer::{Tracer, root_box};
 use crate::light_node::{LANES, VplBlock};
 use crate::light_tree::LightTree;
 use glam::{DVec3, Vec3};
@@ -91,10 +91,7 @@ fn planes(tracer: &Tracer<'_>) -> Vec<Plane> {
 
 /// A box around everything, with some room for how points on surfaces are rounded.
 fn surroundings(geometry: &Geometry<'_>) -> (Vec3, Vec3) {
-    let Some(root) = geometry.nodes.first() else { return (Vec3::ZERO, Vec3::ZERO) };
-    let children = (0..LANES).map(|lane| root.child_box(lane)).filter(|(lower, upper)| lower.cmple(*upper).all());
-    let (lower, upper) = children
-        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lower, upper), child| (lower.min(child.0), upper.max(child.1)));
+    let (lower, upper) = root_box(geometry, |_| 0);
     let room = Vec3::splat((upper - lower).max_element() * 1e-3);
     (lower - room, upper + room)
 }
@@ -129,6 +126,7 @@ mod tests {
     use lightcuts_kernel::light::Vpl;
     use lightcuts_kernel::ray::{shadow_ray, spawn_epsilon};
     use lightcuts_kernel::rng::random4;
+    use lightcuts_world::bvh::{BvhNode, ChildRef};
 
     /// A point on a square or close to it, on either side.
     fn near(square: &Square, k: u32) -> Vec3 {
@@ -197,7 +195,9 @@ mod tests {
             across: Vec3::Z,
             padding: 0,
         };
-        let geometry = Geometry { nodes: &[], triangles: &[], spheres: &[], squares: &[square] };
+        let mut root = BvhNode::EMPTY;
+        root.set_child(0, (Vec3::splat(-4.0), Vec3::splat(4.0)), ChildRef::Square(0));
+        let geometry = Geometry { nodes: &[root], triangles: &[], spheres: &[], squares: &[square] };
         let tracer = Tracer::new(geometry, Rules::Original, Simd::Off);
         let sides = |heights: &[f32]| {
             let vpls: Vec<Vpl> = heights.iter().map(|&y| vpl(y)).collect();
