@@ -31,7 +31,7 @@ fn add_vpl(sum: Gathered, vpl: Vpl, surface: NodeSurface, diffuse: vec3<f32>) ->
     var gathered = sum;
     gathered.chosen += 1u;
     let at = vpl_incidence(vpl, surface.point, surface.normal);
-    if (!is_incident(at)) {
+    if (at.cosines <= 0.0) {
         return gathered;
     }
     gathered.shadow_rays += 1u;

@@ -1,7 +1,6 @@
 //! Clusters of VPLs and bounds on the thesis' relevance: what every light tree decides with.
 
 use crate::light::Vpl;
-use crate::ray::normalize_or_zero;
 use glam::Vec3;
 
 /// Relative margin by which a bound must miss the threshold before it decides for a whole cluster: above the rounding
@@ -31,8 +30,9 @@ pub struct LightCluster {
 /// distance, reaches a threshold. A point that coincides with the light is always reached.
 pub fn is_relevant(vpl: &Vpl, intensity: f32, point: Vec3, threshold: f32) -> bool {
     let to_light = vpl.position - point;
-    // Without a division: this is asked for every VPL that bounds cannot decide about.
-    (-vpl.direction.dot(normalize_or_zero(to_light))).max(0.0) * intensity >= threshold * to_light.dot(to_light)
+    let dist_sq = to_light.dot(to_light);
+    // Without a division, as are the bounds: this is asked for every VPL that they cannot decide about.
+    (-vpl.direction.dot(to_light)).max(0.0) * intensity >= threshold * (dist_sq * dist_sq.sqrt())
 }
 
 /// Bounds on the relevance of a cluster's VPLs for a point, up to [`BOUND_MARGIN`], as fractions without the division:

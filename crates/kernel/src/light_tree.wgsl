@@ -22,7 +22,8 @@ struct RelevanceBounds {
 
 fn is_relevant(vpl: Vpl, intensity: f32, point: vec3<f32>, threshold: f32) -> bool {
     let towards = vpl.position - point;
-    return max(-dot3(vpl.direction, normalize_or_zero(towards)), 0.0) * intensity >= threshold * dot3(towards, towards);
+    let dist_sq = dot3(towards, towards);
+    return max(-dot3(vpl.direction, towards), 0.0) * intensity >= threshold * (dist_sq * sqrt(dist_sq));
 }
 
 fn relevance_bounds(cluster: LightCluster, point: vec3<f32>) -> RelevanceBounds {

@@ -47,17 +47,28 @@ pub fn phong(light: &Light, material: &Material, at: &Incidence, normal: Vec3, t
     (color * (light.attenuation * at.cos_phi)).min(Vec3::ONE)
 }
 
+/// A VPL as seen from a point, before its visibility is known. Cosines are kept times the distance: without a root for each of the
+/// very many that are seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VplIncidence {
+    /// Vector from the point to the VPL.
+    pub to_light: Vec3,
+    /// Product of the cosines at the surface and at the VPL, times the squared distance. Above 0.
+    pub cosines: f32,
+    /// Squared distance.
+    pub dist_sq: f32,
+}
+
 /// How light of a VPL arrives at a point with this normal, or `None` where one of them faces away.
-pub fn vpl_incidence(vpl: &Vpl, point: Vec3, normal: Vec3) -> Option<Incidence> {
+pub fn vpl_incidence(vpl: &Vpl, point: Vec3, normal: Vec3) -> Option<VplIncidence> {
     let to_light = vpl.position - point;
-    let unit = normalize_or_zero(to_light);
-    let (cos_theta, cos_phi) = (normal.dot(unit), -vpl.direction.dot(unit));
-    (cos_theta > 0.0 && cos_phi > 0.0).then_some(Incidence { to_light, cos_theta, cos_phi })
+    let cosines = normal.dot(to_light).max(0.0) * (-vpl.direction.dot(to_light)).max(0.0);
+    (cosines > 0.0).then_some(VplIncidence { to_light, cosines, dist_sq: to_light.dot(to_light) })
 }
 
 /// What a visible VPL adds to a surface with this diffuse colour, at most 1 per channel.
-pub fn phong_vpl(vpl: &Vpl, diffuse: Vec3, at: &Incidence) -> Vec3 {
-    (vpl.diffuse * diffuse * at.cos_theta * (vpl.attenuation * at.cos_phi)).min(Vec3::ONE)
+pub fn phong_vpl(vpl: &Vpl, diffuse: Vec3, at: &VplIncidence) -> Vec3 {
+    (vpl.diffuse * diffuse * (vpl.attenuation * (at.cosines / at.dist_sq))).min(Vec3::ONE)
 }
 
 #[cfg(test)]
@@ -113,12 +124,13 @@ mod tests {
         };
         let point = Vec3::new(0.7, 0.1, -0.3);
         let (a, b) = (incidence(&light, point, Vec3::Y).unwrap(), vpl_incidence(&vpl, point, Vec3::Y).unwrap());
-        assert_eq!(a, b);
+        assert_eq!(a.to_light, b.to_light);
+        assert!((a.cos_theta * a.cos_phi - b.cosines / b.dist_sq).abs() < 1e-6);
         let material = matt();
-        assert_eq!(
-            phong(&light, &material, &a, Vec3::Y, Vec3::Y, Rules::Repaired),
-            phong_vpl(&vpl, material.diffuse, &b)
-        );
+        let expected = phong(&light, &material, &a, Vec3::Y, Vec3::Y, Rules::Repaired);
+        assert!((phong_vpl(&vpl, material.diffuse, &b) - expected).abs().max_element() < 1e-6);
+        assert!(vpl_incidence(&vpl, point, Vec3::NEG_Y).is_none());
+        assert!(vpl_incidence(&vpl, vpl.position, Vec3::Y).is_none());
     }
 
     #[test]

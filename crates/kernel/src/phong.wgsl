@@ -32,12 +32,19 @@ fn phong(light: Light, material: Material, at: Incidence, normal: vec3<f32>, to_
     return min(color * (light.attenuation * at.cos_phi), vec3<f32>(1.0));
 }
 
-fn vpl_incidence(vpl: Vpl, point: vec3<f32>, normal: vec3<f32>) -> Incidence {
-    let towards = vpl.position - point;
-    let unit = normalize_or_zero(towards);
-    return Incidence(towards, dot3(normal, unit), -dot3(vpl.direction, unit));
+struct VplIncidence {
+    to_light: vec3<f32>,
+    // 0 where one of both faces away.
+    cosines: f32,
+    dist_sq: f32,
 }
 
-fn phong_vpl(vpl: Vpl, diffuse: vec3<f32>, at: Incidence) -> vec3<f32> {
-    return min(vpl.diffuse * diffuse * at.cos_theta * (vpl.attenuation * at.cos_phi), vec3<f32>(1.0));
+fn vpl_incidence(vpl: Vpl, point: vec3<f32>, normal: vec3<f32>) -> VplIncidence {
+    let towards = vpl.position - point;
+    let cosines = max(dot3(normal, towards), 0.0) * max(-dot3(vpl.direction, towards), 0.0);
+    return VplIncidence(towards, cosines, dot3(towards, towards));
+}
+
+fn phong_vpl(vpl: Vpl, diffuse: vec3<f32>, at: VplIncidence) -> vec3<f32> {
+    return min(vpl.diffuse * diffuse * (vpl.attenuation * (at.cosines / at.dist_sq)), vec3<f32>(1.0));
 }

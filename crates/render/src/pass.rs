@@ -161,12 +161,12 @@ impl Worker<'_> {
                 self.result.selections.extend(&self.shader.selected);
             }
             Wants::SurfacesAndHits => {
-                see(seen, self.tree.first_found());
+                see(seen, &self.shader, self.tree.first_found());
                 self.tree.hits(&mut self.tree_hits);
                 self.result.hits.extend(&self.tree_hits);
             }
             Wants::SurfacesAndVpls(placement) => {
-                see(seen, self.tree.first_found());
+                see(seen, &self.shader, self.tree.first_found());
                 if let Some(placement) = placement {
                     let (pixel, sample) = self.shader.place;
                     self.tree.hits(&mut self.tree_hits);
@@ -183,14 +183,14 @@ fn sum_selected(seen: &mut Seen, selected: &[u32]) {
     seen.shaded += selected.len() as u64;
 }
 
-fn see(seen: &mut Seen, found: Option<&Found>) {
+fn see(seen: &mut Seen, shader: &Shader<'_>, found: Option<&Found>) {
     seen.samples += 1;
     if let Some(found) = found {
         if seen.hits == 0 {
             seen.object = found.surface.object;
         }
         seen.hits += 1;
-        seen.albedo += found.material.diffuse;
+        seen.albedo += shader.material(found).diffuse;
         seen.normal += found.surface.normal;
         seen.depth += found.hit.t;
     }

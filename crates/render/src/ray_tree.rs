@@ -71,7 +71,8 @@ impl RayTree {
             slot.found = Some(found);
             // A slot of the deepest layer has no children.
             if k < (1 << (self.max_depth - 1)) - 1 {
-                (slot.reflection, slot.refraction) = (found.material.reflection, found.material.refraction);
+                let material = shader.material(&found);
+                (slot.reflection, slot.refraction) = (material.reflection, material.refraction);
             }
         }
         slot
@@ -86,7 +87,8 @@ impl RayTree {
         if reflection <= 0.0 && refraction <= 0.0 {
             return;
         }
-        let (ray, Found { surface, material, epsilon, .. }) = (*ray, *found);
+        let (ray, Found { surface, epsilon, .. }) = (*ray, *found);
+        let material = shader.material(found);
         let child = |direction: Vec3, inside: bool| Ray {
             origin: surface.point,
             direction,

@@ -22,7 +22,6 @@ use lightcuts_world::bvh::LANES;
 pub(crate) struct Found {
     pub(crate) hit: Hit,
     pub(crate) surface: Surface,
-    pub(crate) material: Material,
     /// Distance that separates rays and VPLs from this surface.
     pub(crate) epsilon: f32,
 }
@@ -99,9 +98,12 @@ impl<'a> Shader<'a> {
     fn found(&self, ray: &Ray, hit: Hit) -> Option<Found> {
         hit.is_some().then(|| {
             let surface = surface_at(&self.world.shapes.surfaces(), ray, &hit);
-            let material = self.world.materials[surface.material as usize];
-            Found { hit, surface, material, epsilon: spawn_epsilon(self.tracer.rules, surface.point, hit.t) }
+            Found { hit, surface, epsilon: spawn_epsilon(self.tracer.rules, surface.point, hit.t) }
         })
+    }
+
+    pub(crate) fn material(&self, found: &Found) -> &'a Material {
+        &self.world.materials[found.surface.material as usize]
     }
 
     /// What neighbouring camera rays find, of eight the first `count`, and the VPLs' light there.
@@ -126,9 +128,9 @@ impl<'a> Shader<'a> {
         let (mut all_visits, mut ends) = (Vec::with_capacity(LANES), Vec::with_capacity(LANES));
         self.candidates_together.clear();
         for (place, first) in firsts.iter().enumerate() {
-            let Some(found) = first.found.filter(|found| found.material.local != 0.0) else { continue };
+            let Some(found) = first.found.filter(|found| self.material(found).local != 0.0) else { continue };
             places.push(place);
-            receivers.push(receiver(&found));
+            receivers.push(self.receiver(&found));
             all_visits.push(choose(vpls, &self.tracer, found.surface.point, &mut self.candidates_together));
             ends.push(self.candidates_together.len());
         }
@@ -145,7 +147,7 @@ impl<'a> Shader<'a> {
 
     /// The colour that a hit shows by itself: E times the light that arrives, plus glow.
     pub(crate) fn local(&mut self, slot: u32, ray: &Ray, found: &Found) -> Vec3 {
-        let Material { local, glow, .. } = found.material;
+        let Material { local, glow, .. } = *self.material(found);
         match self.lighting {
             Lighting::Scene { .. } if local == 0.0 => glow,
             Lighting::Scene { occlusion } => {
@@ -161,8 +163,9 @@ impl<'a> Shader<'a> {
     }
 
     /// The scene's lights: each clamped, summed; a texture is added where at least one arrives.
-    fn direct(&mut self, ray: &Ray, Found { hit, surface, material, epsilon }: &Found) -> Vec3 {
-        let rules = self.tracer.rules;
+    fn direct(&mut self, ray: &Ray, found: &Found) -> Vec3 {
+        let Found { hit, surface, epsilon } = found;
+        let (rules, material) = (self.tracer.rules, self.material(found));
         let mut color = Vec3::ZERO;
         let mut lit = false;
         for light in &self.world.lights {
@@ -188,26 +191,27 @@ impl<'a> Shader<'a> {
 
     /// The VPLs chosen for a hit, and caustics.
     fn gather(&mut self, vpls: &VplLighting<'_>, found: &Found, is_first: bool) -> Vec3 {
-        let Found { surface, material, .. } = found;
+        let surface = &found.surface;
         let known = self.first.filter(|_| is_first).and_then(|first| first.gathered);
         let (gathered, visits) = known.unwrap_or_else(|| {
             if vpls.strategy != Strategy::All {
                 self.candidates.clear();
             }
             let visits = choose(vpls, &self.tracer, surface.point, &mut self.candidates);
-            let receiver = receiver(found);
+            let receiver = self.receiver(found);
             (evaluate(&self.tracer, &blocks(vpls, self.walls), &self.candidates, threshold(vpls), &receiver), visits)
         });
         self.visits.add(&TreeVisits { shaded_hits: 1, selected: u64::from(gathered.chosen), ..visits });
         self.selected.push(gathered.chosen);
         self.rays.shadow += gathered.shadow_rays;
         let caustics = vpls.photons.map_or(Vec3::ZERO, |photons| photons.gather(surface.point, surface.normal));
-        gathered.color + caustics * material.diffuse
+        gathered.color + caustics * self.material(found).diffuse
     }
-}
 
-fn receiver(Found { surface, material, epsilon, .. }: &Found) -> Receiver {
-    Receiver { point: surface.point, normal: surface.normal, diffuse: material.diffuse, epsilon: *epsilon }
+    fn receiver(&self, found: &Found) -> Receiver {
+        let Found { surface, epsilon, .. } = *found;
+        Receiver { point: surface.point, normal: surface.normal, diffuse: self.material(found).diffuse, epsilon }
+    }
 }
 
 fn blocks<'a>(vpls: &VplLighting<'a>, walls: &'a Walls) -> Blocks<'a> {

@@ -7,30 +7,16 @@ use super::avx2_trace::{Wide3, dot, load, load3, splat_lane, splat3, spread, sto
 use super::gather::{Blocks, Candidates, Decisions, Gathered, Receiver};
 use super::stack::Stack;
 use super::tracer::Tracer;
+use super::walls::Shared;
 use crate::light_node::{LANES, LightNode, VplBlock};
 use glam::Vec3;
-use lightcuts_kernel::Rules;
 use lightcuts_kernel::light_tree::BOUND_MARGIN;
-use lightcuts_kernel::ray::ORIGINAL_EPSILON;
 use std::arch::x86_64::{
-    __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_blendv_ps,
-    _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps,
-    _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps, _mm256_xor_ps,
+    __m256, __m256i, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps,
+    _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps,
+    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_setzero_si256,
+    _mm256_sqrt_ps, _mm256_sub_epi32, _mm256_sub_ps, _mm256_xor_ps,
 };
-
-/// The ends of shadow rays; twin of `kernel::ray::shadow_ray`.
-#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-fn shadow_ends(rules: Rules, to_light: Wide3, epsilon: __m256) -> (__m256, __m256) {
-    let one = _mm256_set1_ps(1.0);
-    match rules {
-        Rules::Original => (_mm256_set1_ps(ORIGINAL_EPSILON), one),
-        Rules::Repaired => {
-            let length = _mm256_max_ps(_mm256_sqrt_ps(dot(to_light, to_light)), _mm256_set1_ps(f32::MIN_POSITIVE));
-            let relative = _mm256_div_ps(epsilon, length);
-            (relative, _mm256_sub_ps(one, relative))
-        }
-    }
-}
 
 /// Decides for every cluster of a node; twin of `kernel::light_tree::decide`, same bits.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
@@ -72,87 +58,75 @@ pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decis
 
 /// Lanes whose relevance reaches the threshold; twin of `kernel::light_tree::is_relevant`.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
 fn relevant(intensity: __m256, cos_phi: __m256, dist_sq: __m256, threshold: f32) -> u32 {
-    // With NaN in the first place the maximum is its second operand, as in the plain version.
-    let flux = _mm256_mul_ps(_mm256_max_ps(cos_phi, _mm256_setzero_ps()), intensity);
-    let needed = _mm256_mul_ps(_mm256_set1_ps(threshold), dist_sq);
+    let flux = _mm256_mul_ps(cos_phi, intensity);
+    let volume = _mm256_mul_ps(dist_sq, _mm256_sqrt_ps(dist_sq));
+    let needed = _mm256_mul_ps(_mm256_set1_ps(threshold), volume);
     _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(flux, needed)) as u32
 }
 
-/// How VPLs would light points: eight of a block one point, or one of them eight points.
+/// Cosines times distances, 0 where they are negative, at points and at VPLs; and squared distances.
+struct Cosines {
+    theta: __m256,
+    phi: __m256,
+    dist_sq: __m256,
+}
+
+impl Cosines {
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn new(to_light: Wide3, normal: Wide3, direction: Wide3) -> Self {
+        let zero = _mm256_setzero_ps();
+        // With NaN in the first place the maximum is its second operand, as in the plain versions.
+        let theta = _mm256_max_ps(dot(normal, to_light), zero);
+        let phi = _mm256_max_ps(_mm256_sub_ps(zero, dot(direction, to_light)), zero);
+        Self { theta, phi, dist_sq: dot(to_light, to_light) }
+    }
+}
+
+/// How VPLs would light points: eight of a block one point, or one of them eight points. With the ray, twin of `VplIncidence`.
 #[derive(Clone, Copy)]
-struct Incidence {
-    cos_theta: __m256,
-    cos_phi: __m256,
+struct Light {
+    cosines: __m256,
     block: u32,
     /// Of the block, where it is one VPL.
-    lane: usize,
-    /// Lanes with shadow rays, a bit each.
-    facing: u32,
+    lane: u32,
 }
 
-impl Incidence {
-    /// Adds the light of VPLs that are visible, as a mask; twin of `phong_vpl`.
-    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    #[inline]
-    fn add(&self, sums: &mut Wide3, colors: Wide3, attenuation: __m256, diffuse: Wide3, visible: __m256) {
-        let emission = _mm256_mul_ps(attenuation, self.cos_phi);
-        for channel in 0..3 {
-            let reflected = _mm256_mul_ps(_mm256_mul_ps(colors[channel], diffuse[channel]), self.cos_theta);
-            let color = _mm256_min_ps(_mm256_mul_ps(reflected, emission), _mm256_set1_ps(1.0));
-            sums[channel] = _mm256_add_ps(sums[channel], _mm256_and_ps(color, visible));
-        }
-    }
-}
-
-/// Squared distances, and the cosines at the points and at the VPLs; twin of `vpl_incidence`.
+/// Shadow rays of the lanes in `chosen` that face their VPL, or that their VPL faces; twin of `vpl_incidence`.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-fn cosines(to_light: Wide3, normal: Wide3, direction: Wide3) -> (__m256, [__m256; 2]) {
-    let dist_sq = dot(to_light, to_light);
-    let reciprocal = _mm256_div_ps(_mm256_set1_ps(1.0), _mm256_sqrt_ps(dist_sq));
-    let [x, y, z] = to_light;
-    let unit = [_mm256_mul_ps(x, reciprocal), _mm256_mul_ps(y, reciprocal), _mm256_mul_ps(z, reciprocal)];
-    (dist_sq, [dot(normal, unit), _mm256_sub_ps(_mm256_setzero_ps(), dot(direction, unit))])
+fn shadow(
+    direction: Wide3,
+    cosines: &Cosines,
+    (block, lane): (u32, usize),
+    chosen: u32,
+    shared: Shared,
+) -> Shadow<Light> {
+    let product = _mm256_mul_ps(cosines.theta, cosines.phi);
+    let facing = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(product, _mm256_setzero_ps())) as u32;
+    let light = Light { cosines: product, block, lane: lane as u32 };
+    Shadow { direction, length_sq: cosines.dist_sq, shared, open: facing & chosen, light }
 }
 
-/// What is still to be traced. First the cosines of many, then their shadow rays, then their light: while a processor waits for one
-/// root and quotient it can begin with the next few, as long as little else lies between them.
-struct Batch(Stack<Incidence, MOST>);
-
-impl Batch {
-    /// Takes an incidence if there are rays to trace; says whether there is no more room.
-    #[inline]
-    fn push(&mut self, incidence: Incidence) -> bool {
-        self.0.push_if(incidence, incidence.facing != 0);
-        self.0.size == MOST
-    }
-
-    /// Traces what was taken: `aim` makes the rays, without their sides and which are asked for; `light` is told which lanes see
-    /// their VPL, as a mask.
+impl Shadow<Light> {
+    /// Adds the light of VPLs that are visible; twin of `phong_vpl`.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    fn trace(
-        &mut self,
-        (tracer, source, blocks): (&Tracer<'_>, &Source, &Blocks<'_>),
-        epsilon: __m256,
-        aim: impl Fn(&Incidence) -> Wide3,
-        mut light: impl FnMut(&Incidence, __m256),
-    ) {
-        let mut shadows = Stack::<Shadow, MOST>::new();
-        for incidence in self.0.as_slice() {
-            let direction = aim(incidence);
-            let (t_min, t_max) = shadow_ends(tracer.rules, direction, epsilon);
-            let ends = blocks.walls.of_block(incidence.block);
-            shadows.push(Shadow { direction, t_min, t_max, ends, open: incidence.facing });
+    fn add(&self, sums: &mut Wide3, colors: Wide3, attenuation: __m256, diffuse: Wide3) {
+        let factor = _mm256_mul_ps(attenuation, _mm256_div_ps(self.light.cosines, self.length_sq));
+        let factor = _mm256_and_ps(factor, spread(self.open));
+        for channel in 0..3 {
+            let color = _mm256_mul_ps(_mm256_mul_ps(colors[channel], diffuse[channel]), factor);
+            sums[channel] = _mm256_add_ps(sums[channel], _mm256_min_ps(color, _mm256_set1_ps(1.0)));
         }
-        source.trace(tracer, shadows.as_mut_slice());
-        for (incidence, shadow) in self.0.as_slice().iter().zip(shadows.as_slice()) {
-            light(incidence, spread(shadow.open));
-        }
-        self.0.size = 0;
     }
 }
+
+/// Shadow rays that are still to be traced. First those of many VPLs, then their ways, then their light: a processor can begin with
+/// the next few while it waits for what the first ones need, as long as little else lies between them.
+type Batch = Stack<Shadow<Light>, MOST>;
 
 /// What the chosen VPLs add; twin of the plain `evaluate`.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
@@ -163,49 +137,49 @@ pub(super) fn evaluate(
     threshold: Option<f32>,
     at: &Receiver,
 ) -> Gathered {
-    let zero = _mm256_setzero_ps();
+    let Blocks { vpls, walls } = blocks;
     let (point, normal, diffuse) = (splat3(at.point), splat3(at.normal), splat3(at.diffuse));
-    let source = Source::new(tracer, blocks.walls, point);
-    let mut batch = Batch(Stack::new());
-    let mut sums = [zero; 3];
-    let mut gathered = Gathered { color: Vec3::ZERO, chosen: 0, shadow_rays: 0 };
-    let mut trace = |batch: &mut Batch| {
-        let aim = |incidence: &Incidence| sub(load3(&blocks.vpls[incidence.block as usize].position), point);
-        batch.trace((tracer, &source, blocks), _mm256_set1_ps(at.epsilon), aim, |incidence, visible| {
-            let block = &blocks.vpls[incidence.block as usize];
-            let (colors, attenuation) = (load3(&block.diffuse), load(&block.attenuation));
-            incidence.add(&mut sums, colors, attenuation, diffuse, visible);
-        });
+    let outlook = walls.outlook(at.normal);
+    let mut source = Source::new(point, _mm256_set1_ps(at.epsilon));
+    source.look(&tracer.geometry, walls);
+    let mut batch = Batch::new();
+    let mut sums = [_mm256_setzero_ps(); 3];
+    let mut trace = |batch: &mut Batch, size: usize| {
+        batch.size = size;
+        source.trace(tracer, batch.as_mut_slice());
+        let mut total = sums;
+        for shadow in batch.as_slice() {
+            let block = &vpls[shadow.light.block as usize];
+            shadow.add(&mut total, load3(&block.diffuse), load(&block.attenuation), diffuse);
+        }
+        sums = total;
     };
-    for candidates in candidates {
-        let block = &blocks.vpls[candidates.block as usize];
+    let (mut all_chosen, mut shadow_rays, mut size) = (0, 0, 0);
+    for &Candidates { block: number, lanes, certain } in candidates {
+        let (lanes, tested) = (u32::from(lanes), threshold.filter(|_| !certain));
+        if tested.is_none() && walls.is_turned_away(number, outlook) {
+            all_chosen += lanes.count_ones();
+            continue;
+        }
+        let block = &vpls[number as usize];
         let to_light = sub(load3(&block.position), point);
-        let (dist_sq, [cos_theta, cos_phi]) = cosines(to_light, normal, load3(&block.direction));
-        let relevant = match threshold {
-            Some(threshold) if !candidates.certain => relevant(load(&block.intensity), cos_phi, dist_sq, threshold),
-            _ => u32::MAX,
-        };
-        let chosen = u32::from(candidates.lanes) & relevant;
-        let facing = chosen & facing(cos_theta, cos_phi);
-        gathered.chosen += chosen.count_ones();
-        gathered.shadow_rays += u64::from(facing.count_ones());
-        if batch.push(Incidence { cos_theta, cos_phi, block: candidates.block, lane: 0, facing }) {
-            trace(&mut batch);
+        let cosines = Cosines::new(to_light, normal, load3(&block.direction));
+        let relevant = tested
+            .map_or(u32::MAX, |threshold| relevant(load(&block.intensity), cosines.phi, cosines.dist_sq, threshold));
+        let chosen = lanes & relevant;
+        let shadow = shadow(to_light, &cosines, (number, 0), chosen, source.shared(walls.sides(number)));
+        all_chosen += chosen.count_ones();
+        shadow_rays += u64::from(shadow.open.count_ones());
+        size = batch.put_if(size, shadow, shadow.open != 0);
+        if size == MOST {
+            trace(&mut batch, size);
+            size = 0;
         }
     }
-    trace(&mut batch);
+    trace(&mut batch, size);
     let [r, g, b] = [store(sums[0]), store(sums[1]), store(sums[2])];
-    gathered.color = (0..LANES).fold(Vec3::ZERO, |total, lane| total + Vec3::new(r[lane], g[lane], b[lane]));
-    gathered
-}
-
-/// Lanes where point and VPL face each other.
-#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-#[inline]
-fn facing(cos_theta: __m256, cos_phi: __m256) -> u32 {
-    let zero = _mm256_setzero_ps();
-    let is_positive = |cosine: __m256| _mm256_cmp_ps::<_CMP_GT_OQ>(cosine, zero);
-    _mm256_movemask_ps(_mm256_and_ps(is_positive(cos_theta), is_positive(cos_phi))) as u32
+    let color = (0..LANES).fold(Vec3::ZERO, |total, lane| total + Vec3::new(r[lane], g[lane], b[lane]));
+    Gathered { color, chosen: all_chosen, shadow_rays }
 }
 
 /// Points that gather together, component by component; the last one fills what is left of the eight.
@@ -213,6 +187,8 @@ struct Points {
     count: usize,
     point: Wide3,
     normal: Wide3,
+    /// The normal if it is the same for all, else no number.
+    common_normal: Vec3,
     diffuse: Wide3,
     epsilon: __m256,
 }
@@ -225,8 +201,10 @@ impl Points {
             std::array::from_fn(|axis| std::array::from_fn(|k| of(lane(k))[axis]))
         };
         let epsilon = std::array::from_fn(|k| lane(k).epsilon);
+        let normal = at[0].normal;
         Self {
             count: at.len(),
+            common_normal: if at.iter().all(|at| at.normal == normal) { normal } else { Vec3::NAN },
             point: load3(&wide3(&|at| at.point)),
             normal: load3(&wide3(&|at| at.normal)),
             diffuse: load3(&wide3(&|at| at.diffuse)),
@@ -234,36 +212,35 @@ impl Points {
         }
     }
 
-    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    #[inline]
-    fn to_light(&self, block: &VplBlock, lane: usize) -> Wide3 {
-        sub(splat_lane(&block.position, lane), self.point)
-    }
-
     /// Which of the points in `asked` have a VPL, those of `tested` only where its relevance reaches the threshold or they are
-    /// certain; and how it would light them.
+    /// certain; and their shadow rays.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    fn incidence(
+    fn shadow(
         &self,
-        blocks: &Blocks<'_>,
+        block: &VplBlock,
         (number, lane): (u32, usize),
-        asked: u32,
-        tested: Option<(f32, u32)>,
-    ) -> (u32, Incidence) {
-        let block = &blocks.vpls[number as usize];
-        let to_light = self.to_light(block, lane);
-        let (dist_sq, [cos_theta, cos_phi]) = cosines(to_light, self.normal, splat_lane(&block.direction, lane));
+        (asked, tested): (u32, Option<(f32, u32)>),
+        shared: Shared,
+    ) -> (u32, Shadow<Light>) {
+        let to_light = sub(splat_lane(&block.position, lane), self.point);
+        let cosines = Cosines::new(to_light, self.normal, splat_lane(&block.direction, lane));
         let chosen = match tested {
             Some((threshold, certain)) => {
                 let intensity = _mm256_set1_ps(block.intensity[lane % LANES]);
-                asked & (certain | relevant(intensity, cos_phi, dist_sq, threshold))
+                asked & (certain | relevant(intensity, cosines.phi, cosines.dist_sq, threshold))
             }
             None => asked,
         };
-        let facing = chosen & facing(cos_theta, cos_phi);
-        (chosen, Incidence { cos_theta, cos_phi, block: number, lane, facing })
+        (chosen, shadow(to_light, &cosines, (number, lane), chosen, shared))
     }
+}
+
+/// Counts a mask's lanes, each in its own.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+fn count(counts: &mut __m256i, mask: u32) {
+    *counts = _mm256_sub_epi32(*counts, _mm256_castps_si256(spread(mask)));
 }
 
 /// Twin of [`evaluate`] for up to eight points, each with its candidates in the order of their blocks: one VPL at a time for all
@@ -276,48 +253,58 @@ pub(super) fn evaluate_together(
     threshold: Option<f32>,
     at: &[Receiver],
 ) -> [Gathered; LANES] {
+    let Blocks { vpls, walls } = blocks;
     let zero = _mm256_setzero_ps();
     let points = Points::new(at);
-    let source = Source::new(tracer, blocks.walls, points.point);
-    let mut batch = Batch(Stack::new());
+    let outlook = walls.outlook(points.common_normal);
+    let mut source = Source::new(points.point, points.epsilon);
+    source.look(&tracer.geometry, walls);
+    let mut batch = Batch::new();
     // By lane of the VPLs, as one point sums them.
     let mut sums = [[zero; 3]; LANES];
-    let mut trace = |batch: &mut Batch| {
-        let aim = |incidence: &Incidence| points.to_light(&blocks.vpls[incidence.block as usize], incidence.lane);
-        batch.trace((tracer, &source, blocks), points.epsilon, aim, |incidence, visible| {
-            let (block, lane) = (&blocks.vpls[incidence.block as usize], incidence.lane % LANES);
+    let mut trace = |batch: &mut Batch, size: usize| {
+        batch.size = size;
+        source.trace(tracer, batch.as_mut_slice());
+        for shadow in batch.as_slice() {
+            let (block, lane) = (&vpls[shadow.light.block as usize], shadow.light.lane as usize % LANES);
             let (colors, attenuation) = (splat_lane(&block.diffuse, lane), _mm256_set1_ps(block.attenuation[lane]));
-            incidence.add(&mut sums[lane], colors, attenuation, points.diffuse, visible);
-        });
+            shadow.add(&mut sums[lane], colors, attenuation, points.diffuse);
+        }
     };
-    let (mut chosen, mut shadow_rays) = ([0_u32; LANES], [0_u32; LANES]);
+    let (mut all_chosen, mut shadow_rays) = (_mm256_setzero_si256(), _mm256_setzero_si256());
     let mut next = [0_usize; LANES];
+    let mut size = 0;
     loop {
         let blocks_ahead = (0..points.count).filter_map(|k| candidates[k].get(next[k])).map(|ahead| ahead.block);
         let Some(number) = blocks_ahead.min() else { break };
-        // Of each VPL which points have it; and which points have tested theirs.
-        let (mut asked, mut certain) = ([0_u32; LANES], 0);
+        // Of each point the VPLs that it has; and which points have tested theirs.
+        let (mut lanes, mut certain) = ([0_u8; LANES], 0);
         for k in 0..points.count {
             let Some(ahead) = candidates[k].get(next[k]).filter(|ahead| ahead.block == number) else { continue };
             next[k] += 1;
             certain |= u32::from(ahead.certain || threshold.is_none()) << k;
-            for (lane, asked) in asked.iter_mut().enumerate() {
-                *asked |= u32::from(ahead.lanes >> lane & 1) << k;
-            }
+            lanes[k] = ahead.lanes;
         }
+        let asked = transposed(lanes).map(u32::from);
+        let (block, shared) = (&vpls[number as usize], source.shared(walls.sides(number)));
+        let is_turned_away = walls.is_turned_away(number, outlook);
         for lane in (0..LANES).filter(|&lane| asked[lane] != 0) {
             let tested = threshold.filter(|_| asked[lane] & !certain != 0).map(|threshold| (threshold, certain));
-            let (has, incidence) = points.incidence(blocks, (number, lane), asked[lane], tested);
-            for k in 0..LANES {
-                chosen[k] += has >> k & 1;
-                shadow_rays[k] += incidence.facing >> k & 1;
+            if is_turned_away && tested.is_none() {
+                count(&mut all_chosen, asked[lane]);
+                continue;
             }
-            if batch.push(incidence) {
-                trace(&mut batch);
+            let (chosen, shadow) = points.shadow(block, (number, lane), (asked[lane], tested), shared);
+            count(&mut all_chosen, chosen);
+            count(&mut shadow_rays, shadow.open);
+            size = batch.put_if(size, shadow, shadow.open != 0);
+            if size == MOST {
+                trace(&mut batch, size);
+                size = 0;
             }
         }
     }
-    trace(&mut batch);
+    trace(&mut batch, size);
     let mut total = [zero; 3];
     for sum in sums {
         for channel in 0..3 {
@@ -325,9 +312,39 @@ pub(super) fn evaluate_together(
         }
     }
     let [r, g, b] = [store(total[0]), store(total[1]), store(total[2])];
+    let whole = |counts: __m256i| store(_mm256_castsi256_ps(counts)).map(f32::to_bits);
+    let (all_chosen, shadow_rays) = (whole(all_chosen), whole(shadow_rays));
     std::array::from_fn(|k| Gathered {
         color: Vec3::new(r[k], g[k], b[k]),
-        chosen: chosen[k],
+        chosen: all_chosen[k],
         shadow_rays: u64::from(shadow_rays[k]),
     })
+}
+
+/// Rows and columns of eight times eight bits exchanged (Warren 2012, "Hacker's Delight", 7-3).
+fn transposed(rows: [u8; LANES]) -> [u8; LANES] {
+    let exchange = |bits: u64, shift: u32, mask: u64| {
+        let differs = (bits ^ bits >> shift) & mask;
+        bits ^ differs ^ differs << shift
+    };
+    let bits = exchange(u64::from_le_bytes(rows), 7, 0x00aa_00aa_00aa_00aa);
+    let bits = exchange(bits, 14, 0x0000_cccc_0000_cccc);
+    exchange(bits, 28, 0x0000_0000_f0f0_f0f0).to_le_bytes()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_transposed() {
+        for row in 0..LANES {
+            for column in 0..LANES {
+                let (mut rows, mut columns) = ([0; LANES], [0; LANES]);
+                rows[row] = 1 << column;
+                columns[column] = 1 << row;
+                assert_eq!(transposed(rows), columns);
+            }
+        }
+    }
 }

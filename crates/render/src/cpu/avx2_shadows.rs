@@ -6,18 +6,30 @@
 #![allow(unsafe_code)]
 
 use super::avx2_packet::{Packet, height_of, sphere_from};
-use super::avx2_trace::{Wide3, lanes, splat3};
+use super::avx2_trace::{Wide3, lanes};
 use super::stack::Stack;
 use super::tracer::Tracer;
-use super::walls::{FEW, Sides, Walls};
-use std::arch::x86_64::{__m256, _CMP_GE_OQ, _CMP_LE_OQ, _mm256_cmp_ps, _mm256_movemask_ps, _mm256_setzero_ps};
+use super::walls::{FEW, Shared, Sides, Walls};
+use glam::Vec3;
+use lightcuts_kernel::Rules;
+use lightcuts_kernel::ray::ORIGINAL_EPSILON;
+use lightcuts_world::bvh::Geometry;
+use std::arch::x86_64::{
+    __m256, _CMP_GE_OQ, _CMP_LE_OQ, _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps, _mm256_movemask_ps, _mm256_set1_ps,
+    _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps,
+};
 
-/// Packets that are collected: what is kept of them stays in the nearest cache.
-pub(super) const MOST: usize = 32;
+/// A mask of all lanes.
+const ALL: i32 = 0xff;
+
+/// Packets that are collected, a bit each in masks: what is kept of them stays in the nearest cache.
+pub(super) const MOST: usize = u32::BITS as usize;
 
 /// Where shadow rays begin, with what depends on that alone.
 pub(super) struct Source {
     origin: Wide3,
+    /// Distances from the surfaces below which hits do not count.
+    epsilon: __m256,
     /// Of each of a few spheres the vector from its centre, and the square of its length less that of the radius.
     spheres: Stack<(Wide3, __m256), FEW>,
     /// Of each of a few squares how far its centre is along its normal.
@@ -25,54 +37,86 @@ pub(super) struct Source {
     sides: Sides,
 }
 
-/// Eight shadow rays.
+/// Eight shadow rays, for the light of some VPLs.
 #[derive(Clone, Copy)]
-pub(super) struct Shadow {
+pub(super) struct Shadow<L> {
+    /// To the VPLs, and its squared length.
     pub(super) direction: Wide3,
-    pub(super) t_min: __m256,
-    pub(super) t_max: __m256,
-    /// Where the VPLs lie that the rays end at.
-    pub(super) ends: Sides,
+    pub(super) length_sq: __m256,
+    /// Planes that have both ends of all rays on one side.
+    pub(super) shared: Shared,
     /// Rays that are asked for and have hit nothing, a bit each.
     pub(super) open: u32,
+    pub(super) light: L,
 }
 
 impl Source {
-    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    pub(super) fn new(tracer: &Tracer<'_>, walls: &Walls, origin: Wide3) -> Self {
-        let Tracer { geometry, mesh: (lower, upper), .. } = tracer;
-        let zero = _mm256_setzero_ps();
-        let mut source = Self { origin, spheres: Stack::new(), heights: Stack::new(), sides: Sides::default() };
-        for sphere in geometry.spheres.iter().take(FEW) {
-            source.spheres.push(sphere_from(sphere, origin));
-        }
-        let all = |mask: __m256| _mm256_movemask_ps(mask) == 0xff;
-        for (index, square) in geometry.squares.iter().take(FEW).enumerate() {
-            let height = height_of(square, origin);
-            source.heights.push(height);
-            // The centre is behind points in front.
-            source.sides.front |= u32::from(all(_mm256_cmp_ps::<_CMP_LE_OQ>(height, zero))) << index;
-            source.sides.back |= u32::from(all(_mm256_cmp_ps::<_CMP_GE_OQ>(height, zero))) << index;
-        }
-        let is_above = |axis: usize, bound: Wide3| all(_mm256_cmp_ps::<_CMP_GE_OQ>(origin[axis], bound[axis]));
-        let is_below = |axis: usize, bound: Wide3| all(_mm256_cmp_ps::<_CMP_LE_OQ>(origin[axis], bound[axis]));
-        let (least, greatest) = (splat3(walls.lower), splat3(walls.upper));
-        for axis in 0..3 {
-            source.sides.front |= u32::from(is_below(axis, splat3(*lower))) << (FEW + axis);
-            source.sides.front |= u32::from(is_above(axis, splat3(*upper))) << (FEW + 3 + axis);
-        }
-        if !(0..3).all(|axis| is_above(axis, least) && is_below(axis, greatest)) {
-            source.sides = Sides::default();
-        }
-        source
+    /// To be told next where its origins lie. Apart, for what is made here is not to be copied.
+    #[inline]
+    pub(super) fn new(origin: Wide3, epsilon: __m256) -> Self {
+        Self { origin, epsilon, spheres: Stack::new(), heights: Stack::new(), sides: Sides::default() }
     }
 
-    /// Closes the rays that hit anything.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    pub(super) fn trace(&self, tracer: &Tracer<'_>, shadows: &mut [Shadow]) {
+    pub(super) fn look(&mut self, geometry: &Geometry<'_>, walls: &Walls) {
+        let (origin, zero) = (self.origin, _mm256_setzero_ps());
+        for sphere in geometry.spheres.iter().take(FEW) {
+            self.spheres.push(sphere_from(sphere, origin));
+        }
+        let all = |mask: __m256| u32::from(_mm256_movemask_ps(mask) == ALL);
+        let mut sides = Sides::default();
+        for (index, square) in geometry.squares.iter().take(FEW).enumerate() {
+            let height = height_of(square, origin);
+            self.heights.push(height);
+            // The centre is behind points in front.
+            sides.front |= u64::from(all(_mm256_cmp_ps::<_CMP_LE_OQ>(height, zero))) << index;
+            sides.back |= u64::from(all(_mm256_cmp_ps::<_CMP_GE_OQ>(height, zero))) << index;
+        }
+        // Of three planes across the axes those that all origins are above, and below.
+        let above = |planes: Vec3| {
+            let above = |axis: usize| all(_mm256_cmp_ps::<_CMP_GE_OQ>(origin[axis], _mm256_set1_ps(planes[axis])));
+            above(0) | above(1) << 1 | above(2) << 2
+        };
+        let below = |planes: Vec3| {
+            let below = |axis: usize| all(_mm256_cmp_ps::<_CMP_LE_OQ>(origin[axis], _mm256_set1_ps(planes[axis])));
+            below(0) | below(1) << 1 | below(2) << 2
+        };
+        if above(walls.lower) & below(walls.upper) != 0b111 {
+            return;
+        }
+        for (number, &(lower, upper)) in walls.boxes.iter().enumerate() {
+            sides.add_faces(number, below(lower) | above(upper) << 3);
+        }
+        self.sides = sides;
+    }
+
+    /// Of shadow rays to places on some sides.
+    #[inline]
+    pub(super) fn shared(&self, ends: Sides) -> Shared {
+        self.sides.shared(ends)
+    }
+
+    /// A shadow ray as `kernel::ray::shadow_ray` makes it.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn packet(&self, rules: Rules, direction: Wide3, length_sq: __m256) -> Packet {
+        let one = _mm256_set1_ps(1.0);
+        let (t_min, t_max) = match rules {
+            Rules::Original => (_mm256_set1_ps(ORIGINAL_EPSILON), one),
+            Rules::Repaired => {
+                let length = _mm256_max_ps(_mm256_sqrt_ps(length_sq), _mm256_set1_ps(f32::MIN_POSITIVE));
+                let relative = _mm256_div_ps(self.epsilon, length);
+                (relative, _mm256_sub_ps(one, relative))
+            }
+        };
+        Packet { origin: self.origin, direction, t_min, t_max }
+    }
+
+    /// Closes the rays that hit anything. At most [`MOST`] packets.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    pub(super) fn trace<L>(&self, tracer: &Tracer<'_>, shadows: &mut [Shadow<L>]) {
         let Tracer { geometry, rules, .. } = tracer;
-        let packet =
-            |&Shadow { direction, t_min, t_max, .. }: &Shadow| Packet { origin: self.origin, direction, t_min, t_max };
+        let packet = |shadow: &Shadow<L>| self.packet(*rules, shadow.direction, shadow.length_sq);
         if geometry.spheres.len() > FEW || geometry.squares.len() > FEW {
             for shadow in shadows {
                 shadow.open &= !packet(shadow).singly::<true>(geometry, *rules, shadow.open);
@@ -80,24 +124,29 @@ impl Source {
             return;
         }
         for shadow in shadows.iter_mut() {
-            for index in lanes(self.sides.crossed(shadow.ends, geometry.squares.len())) {
+            for index in lanes(shadow.shared.crossed(geometry.squares.len())) {
                 let height = self.heights.as_slice()[index];
                 shadow.open &= !packet(shadow).hits_square(&geometry.squares[index], height);
             }
         }
-        for (sphere, &from) in geometry.spheres.iter().zip(self.spheres.as_slice()) {
-            let mut met = Stack::<usize, MOST>::new();
+        for (number, (sphere, &from)) in geometry.spheres.iter().zip(self.spheres.as_slice()).enumerate() {
+            let mut near = 0_u32;
             for (index, shadow) in shadows.iter().enumerate() {
-                met.push_if(index, packet(shadow).line_meets_sphere(sphere, from, *rules) & shadow.open != 0);
+                near |= u32::from(shadow.shared.may_meet_sphere(number)) << index;
             }
-            for &index in met.as_slice() {
+            let mut met = 0_u32;
+            for index in lanes(near) {
+                let shadow = &shadows[index];
+                met |= u32::from(packet(shadow).line_meets_sphere(sphere, from, *rules) & shadow.open != 0) << index;
+            }
+            for index in lanes(met) {
                 let shadow = &mut shadows[index];
                 shadow.open &= !packet(shadow).hits_sphere(sphere, from, *rules);
             }
         }
         if !geometry.triangles.is_empty() {
             for shadow in shadows {
-                if self.sides.may_meet_mesh(shadow.ends) {
+                if shadow.shared.may_meet_mesh() {
                     shadow.open = packet(shadow).miss_mesh(tracer, shadow.open);
                 }
             }

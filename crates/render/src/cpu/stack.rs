@@ -7,6 +7,7 @@ use std::mem::MaybeUninit;
 /// A stack of fixed size that costs nothing to make: clearing its memory would take longer than most traversals.
 pub(super) struct Stack<T: Copy, const SIZE: usize> {
     entries: [MaybeUninit<T>; SIZE],
+    /// Every entry below it was written.
     pub(super) size: usize,
 }
 
@@ -18,8 +19,14 @@ impl<T: Copy, const SIZE: usize> Stack<T, SIZE> {
     /// Without a branch: what is not wanted is written and then forgotten.
     #[inline]
     pub(super) fn push_if(&mut self, value: T, is_wanted: bool) {
-        self.entries[self.size] = MaybeUninit::new(value);
-        self.size += usize::from(is_wanted);
+        self.size = self.put_if(self.size, value, is_wanted);
+    }
+
+    /// [`Stack::push_if`] for a size that the caller keeps, in a register; the new one.
+    #[inline]
+    pub(super) fn put_if(&mut self, size: usize, value: T, is_wanted: bool) -> usize {
+        self.entries[size] = MaybeUninit::new(value);
+        size + usize::from(is_wanted)
     }
 
     #[inline]

@@ -1,92 +1,182 @@
-//! What a shadow ray need not be tested against: squares that have both of its ends on one side, and the mesh where both lie
-//! beyond one face of its box.
+//! What a shadow ray need not be tested against: squares that have both of its ends on one side, the mesh and spheres where both
+//! lie beyond one face of their boxes, and VPLs that look the same way as the surface does.
 //!
-//! The thesis' scenes are rooms of squares around a mesh: nothing in a room is behind its walls, and five tests per ray would
-//! find that out again and again.
+//! The thesis' scenes are rooms of squares around a mesh or spheres: nothing in a room is behind its walls, and a test per ray and
+//! wall would find that out again and again.
 
 use super::tracer::{Tracer, root_box};
 use crate::light_node::{LANES, VplBlock};
 use crate::light_tree::LightTree;
 use glam::{DVec3, Vec3};
+use lightcuts_kernel::intersect::Sphere;
+use lightcuts_kernel::ray::NONE;
 use lightcuts_world::bvh::Geometry;
 use rayon::prelude::*;
 
 /// Most squares that are looked at.
 pub(crate) const FEW: usize = 16;
 
+/// Faces of a box: the lower one of each axis, then the upper ones; normals outwards.
+const FACES: usize = 6;
+
+/// So many spheres' boxes have bits for their faces, and the mesh's.
+const BOXED: usize = (u64::BITS as usize - FEW) / FACES - 1;
+
 /// Relative error of a difference, a product and the sum of three of them in single precision, with some to spare.
 const ROUNDING: f64 = 5.0 * (f32::EPSILON / 2.0) as f64;
 
+/// How far outside of a sphere a hit may be that single precision finds: its squared distance from the centre exceeds that of the
+/// radius by this times the square of the greatest distance that a ray begins at, with as much to spare ([`sphere_box`]).
+const SPHERE_ROUNDING: f64 = 256.0 * f32::EPSILON as f64;
+
 /// On which side of some planes something lies, a bit each; in neither mask where that is not sure.
 ///
-/// The planes are those of the first squares and, from [`FEW`] on, the faces of the mesh's box with normals outwards: the lower one
-/// of each axis, then the upper ones.
+/// The planes are those of the first squares and, from [`FEW`] on, the faces of boxes: the mesh's, then those of the first spheres.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Sides {
     /// Where the normal points to.
-    pub(crate) front: u32,
-    pub(crate) back: u32,
+    pub(crate) front: u64,
+    pub(crate) back: u64,
 }
+
+/// Planes that have both ends of some rays on the same side, a bit each.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shared(u64);
 
 impl Sides {
-    /// Planes that have both on the same side.
-    fn shared(self, other: Self) -> u32 {
-        self.front & other.front | self.back & other.back
+    pub(crate) fn shared(self, other: Self) -> Shared {
+        Shared(self.front & other.front | self.back & other.back)
     }
 
-    /// Of so many squares those that a ray between both may cross.
-    pub(crate) fn crossed(self, other: Self, squares: usize) -> u32 {
-        ((1 << squares) - 1) & !self.shared(other)
+    /// What holds for what lies on these sides and for what lies on others.
+    fn both(self, other: Self) -> Self {
+        Self { front: self.front & other.front, back: self.back & other.back }
     }
 
-    /// Whether a ray between both may meet the mesh.
-    pub(crate) fn may_meet_mesh(self, other: Self) -> bool {
-        (self.front & other.front) >> FEW == 0
+    /// Takes that a point is beyond some faces of a box, a bit each.
+    pub(crate) fn add_faces(&mut self, number: usize, beyond: u32) {
+        self.front |= u64::from(beyond) << first_face(number);
     }
 }
 
-/// On which sides the VPLs of every block lie.
+impl Shared {
+    /// Of so many squares those that a ray may cross.
+    pub(crate) fn crossed(self, squares: usize) -> u32 {
+        ((1_u64 << squares) - 1 & !self.0) as u32
+    }
+
+    /// Whether a ray may meet the mesh.
+    pub(crate) fn may_meet_mesh(self) -> bool {
+        self.may_meet(0)
+    }
+
+    /// Whether a ray may meet a sphere.
+    pub(crate) fn may_meet_sphere(self, index: usize) -> bool {
+        index >= BOXED || self.may_meet(index + 1)
+    }
+
+    fn may_meet(self, number: usize) -> bool {
+        self.0 >> first_face(number) & ((1 << FACES) - 1) == 0
+    }
+}
+
+/// The bit of a box's first face.
+fn first_face(number: usize) -> usize {
+    FEW + FACES * number
+}
+
+/// What the VPLs of a block have in common.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Placing {
+    pub(crate) sides: Sides,
+    /// The number of their direction, if it is the same for all, else [`NONE`].
+    direction: u32,
+}
+
+/// The way that surfaces with one normal look.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Outlook(u32);
+
+/// How the VPLs of every block lie.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Walls {
-    blocks: Vec<Sides>,
+    blocks: Vec<Placing>,
     /// What points lie in for which that holds.
     pub(crate) lower: Vec3,
     pub(crate) upper: Vec3,
+    /// The boxes whose faces have bits.
+    pub(crate) boxes: Vec<(Vec3, Vec3)>,
+    /// Directions of whole blocks: those that are met first.
+    directions: Vec<Vec3>,
 }
 
 impl Walls {
     /// For points on the surfaces of a tracer's geometry.
     pub(crate) fn new(tracer: &Tracer<'_>, tree: &LightTree) -> Self {
-        let (lower, upper) = surroundings(&tracer.geometry);
-        let planes = planes(tracer);
-        let sides = |(number, block): (usize, &VplBlock)| {
+        let Tracer { geometry, mesh, .. } = tracer;
+        let room = surroundings(geometry);
+        let spheres = geometry.spheres.iter().take(BOXED).map(|sphere| sphere_box(sphere, room));
+        let boxes: Vec<_> = std::iter::once(*mesh).chain(spheres).collect();
+        let planes = planes(geometry, &boxes);
+        let common = |(number, block): (usize, &VplBlock)| {
             let lanes = tree.lanes(number as u32);
-            let all = Sides { front: u32::MAX, back: u32::MAX };
-            (0..LANES).filter(|lane| lanes >> lane & 1 == 1).fold(all, |sides, lane| {
-                let vpl = sides_of(&planes, block.vpl(lane).position, (lower, upper));
-                Sides { front: sides.front & vpl.front, back: sides.back & vpl.back }
-            })
+            let vpls = || (0..LANES).filter(move |lane| lanes >> lane & 1 == 1).map(|lane| block.vpl(lane));
+            let all = Sides { front: u64::MAX, back: u64::MAX };
+            let sides = vpls().map(|vpl| sides_of(&planes, vpl.position, room)).fold(all, Sides::both);
+            let direction = block.vpl(0).direction;
+            (sides, vpls().all(|vpl| vpl.direction == direction).then_some(direction))
         };
-        Self { blocks: tree.blocks.par_iter().enumerate().map(sides).collect(), lower, upper }
+        let common: Vec<_> = tree.blocks.par_iter().enumerate().map(common).collect();
+        let mut directions = Vec::new();
+        let mut placing = |(sides, direction): (Sides, Option<Vec3>)| {
+            let number = direction.and_then(|direction| number_among(&mut directions, direction));
+            Placing { sides, direction: number.unwrap_or(NONE) }
+        };
+        let blocks = common.into_iter().map(&mut placing).collect();
+        Self { blocks, lower: room.0, upper: room.1, boxes, directions }
     }
 
-    pub(crate) fn of_block(&self, block: u32) -> Sides {
-        self.blocks[block as usize]
+    /// The sides that all VPLs of a block are on.
+    pub(crate) fn sides(&self, block: u32) -> Sides {
+        self.blocks[block as usize].sides
+    }
+
+    /// The outlook of a surface.
+    pub(crate) fn outlook(&self, normal: Vec3) -> Outlook {
+        // One past those of blocks where there is none.
+        Outlook(self.directions.iter().take_while(|&&direction| direction != normal).count() as u32)
+    }
+
+    /// Whether the VPLs of a block look the way that a surface does, and so neither lights the other: where normal and direction
+    /// are equal, the cosine at one is that at the other with the other sign, to the last bit.
+    pub(crate) fn is_turned_away(&self, block: u32, Outlook(number): Outlook) -> bool {
+        self.blocks[block as usize].direction == number
     }
 }
 
-/// A plane: its bit, a point, and its normal.
-type Plane = (u32, Vec3, Vec3);
+/// The number of a direction among a few: of a new one as long as there is room.
+fn number_among(directions: &mut Vec<Vec3>, direction: Vec3) -> Option<u32> {
+    let number = directions.iter().position(|&known| known == direction).unwrap_or(directions.len());
+    if number == directions.len() && number < FEW {
+        directions.push(direction);
+    }
+    (number < directions.len()).then_some(number as u32)
+}
 
-/// The planes of all squares, if they are few, and of the mesh's faces, if there is one.
-fn planes(tracer: &Tracer<'_>) -> Vec<Plane> {
-    let Tracer { geometry, mesh: (lower, upper), .. } = tracer;
+/// A plane: its bit, a point, and its normal.
+type Plane = (usize, Vec3, Vec3);
+
+/// The planes of all squares, if they are few, and of the boxes' faces.
+fn planes(geometry: &Geometry<'_>, boxes: &[(Vec3, Vec3)]) -> Vec<Plane> {
     let squares = if geometry.squares.len() > FEW { &[] } else { geometry.squares };
-    let squares = squares.iter().zip(0..).map(|(square, bit)| (bit, square.center, square.normal));
-    let faces = [(*lower, Vec3::NEG_ONE), (*upper, Vec3::ONE)].into_iter().zip(0..).flat_map(|((corner, sign), k)| {
-        [0, 1, 2].map(|axis| (FEW as u32 + 3 * k + axis, corner, Vec3::AXES[axis as usize] * sign))
+    let squares = squares.iter().enumerate().map(|(bit, square)| (bit, square.center, square.normal));
+    let faces = boxes.iter().enumerate().flat_map(|(number, &(lower, upper))| {
+        (0..FACES).map(move |face| {
+            let (corner, sign) = if face < 3 { (lower, -1.0) } else { (upper, 1.0) };
+            (first_face(number) + face, corner, Vec3::AXES[face % 3] * sign)
+        })
     });
-    squares.chain(faces.filter(|_| !geometry.triangles.is_empty())).collect()
+    squares.chain(faces).collect()
 }
 
 /// A box around everything, with some room for how points on surfaces are rounded.
@@ -96,22 +186,40 @@ fn surroundings(geometry: &Geometry<'_>) -> (Vec3, Vec3) {
     (lower - room, upper + room)
 }
 
-/// On which sides of planes a VPL lies so far that no rounding lets a ray from a point in a box towards it cross them, provided
-/// that the point's height above the plane is not of the other sign.
+/// A box that no ray hits a sphere outside of, if it begins outside of the box and lies in the room.
+///
+/// With u half an epsilon and F the greatest distance of a point of the room from the centre, the computed coefficients of the
+/// equation a t^2 + b t + c = 0 are off by few u of |d|^2, |d| F and F^2, and so a root that is computed leaves less than 100 u F^2
+/// of it: by so much the squared distance of the hit from the centre exceeds that of the radius. The other root of the repaired
+/// equation is c / q: outside of the box c is over 500 u F^2, and where the line meets the sphere q^2 is then over 400 u a F^2, so
+/// that the error of q adds a few u F^2 only.
+fn sphere_box(sphere: &Sphere, (lower, upper): (Vec3, Vec3)) -> (Vec3, Vec3) {
+    let center = sphere.center.as_dvec3();
+    let farthest = (center - lower.as_dvec3()).abs().max((center - upper.as_dvec3()).abs());
+    let radius_sq = f64::from(sphere.radius).powi(2) + SPHERE_ROUNDING * farthest.length_squared();
+    let radius = DVec3::splat(radius_sq.sqrt());
+    ((center - radius).as_vec3(), (center + radius).as_vec3())
+}
+
+/// On which sides of planes a VPL lies so far that no rounding lets a ray from a point in a room towards it cross them, provided
+/// that the point's height above the plane is not of the other sign. None, for a VPL outside of the room.
 ///
 /// With the heights p and v of point and VPL along the normal, seen from the plane, it is crossed at t = p / (p - v): at 1 or
 /// beyond, or before 0, where v has the sign of p. `intersect_square` computes that from p and from the slope p - v; if |v| is
 /// more than their errors together, what is rounded keeps that order. A box's face is met at a t that is rounded no worse.
 fn sides_of(planes: &[Plane], position: Vec3, (lower, upper): (Vec3, Vec3)) -> Sides {
     let mut sides = Sides::default();
+    if !(position.cmpge(lower) & position.cmple(upper)).all() {
+        return sides;
+    }
     let position = position.as_dvec3();
     let farthest = |from: DVec3| (from - lower.as_dvec3()).abs().max((from - upper.as_dvec3()).abs());
     for &(bit, point, normal) in planes {
         let (point, normal) = (point.as_dvec3(), normal.as_dvec3());
         let error = ROUNDING * normal.abs().dot(farthest(point) + farthest(position)) + f64::from(f32::MIN_POSITIVE);
         let height = (position - point).dot(normal);
-        sides.front |= u32::from(height > error) << bit;
-        sides.back |= u32::from(height < -error) << bit;
+        sides.front |= u64::from(height > error) << bit;
+        sides.back |= u64::from(height < -error) << bit;
     }
     sides
 }
@@ -122,7 +230,7 @@ mod tests {
     use crate::cpu::Simd;
     use crate::light_tree::TreeLayout;
     use lightcuts_kernel::Rules;
-    use lightcuts_kernel::intersect::{Square, intersect_square};
+    use lightcuts_kernel::intersect::{Square, intersect_sphere, intersect_square};
     use lightcuts_kernel::light::Vpl;
     use lightcuts_kernel::ray::{shadow_ray, spawn_epsilon};
     use lightcuts_kernel::rng::random4;
@@ -157,7 +265,7 @@ mod tests {
             wall(Vec3::new(3.0, 7.0, -11.0), askew, askew.any_orthonormal_vector()),
         ];
         let planes: Vec<Plane> =
-            squares.iter().zip(0..).map(|(square, bit)| (bit, square.center, square.normal)).collect();
+            squares.iter().enumerate().map(|(bit, square)| (bit, square.center, square.normal)).collect();
         let bounds = (Vec3::splat(-420.0), Vec3::splat(420.0));
         let (mut claimed, mut hits) = (0, 0);
         for k in 0..400_000 {
@@ -168,17 +276,54 @@ mod tests {
                 let ray = shadow_ray(rules, from, to - from, spawn_epsilon(rules, from, 300.0));
                 for (index, square) in squares.iter().enumerate() {
                     let height = (square.center - from).dot(square.normal);
-                    let start = Sides { front: u32::from(height <= 0.0), back: u32::from(height >= 0.0) };
+                    let start = Sides { front: u64::from(height <= 0.0), back: u64::from(height >= 0.0) };
                     let ends = Sides { front: ends.front >> index & 1, back: ends.back >> index & 1 };
-                    let hit = intersect_square(square, &ray).is_some();
-                    assert!(!hit || start.shared(ends) == 0, "square {index} between {from} and {to}");
-                    claimed += start.shared(ends);
+                    let (hit, crossed) = (intersect_square(square, &ray).is_some(), start.shared(ends).crossed(1));
+                    assert!(!hit || crossed == 1, "square {index} between {from} and {to}");
+                    claimed += 1 - crossed;
                     hits += u32::from(hit);
                 }
             }
         }
         println!("{claimed} of 3200000 need no test, {hits} are hit");
         assert!(claimed > 1_500_000 && hits > 100_000);
+    }
+
+    #[test]
+    fn no_ray_beyond_a_face_of_its_box_hits_a_sphere() {
+        let sphere = |center: Vec3, radius: f32| Sphere { center, radius, primitive: 0, padding: [0; 3] };
+        let room = (Vec3::splat(-200.0), Vec3::splat(200.0));
+        let spheres = [sphere(Vec3::new(-80.0, -100.0, 70.0), 60.0), sphere(Vec3::new(120.0, 3.0, -60.0), 0.2)];
+        let (mut claimed, mut hits) = (0, 0);
+        for k in 0..400_000 {
+            let sphere = &spheres[(k % 2) as usize];
+            let bounds = sphere_box(sphere, room);
+            let planes = planes(&Geometry { nodes: &[], triangles: &[], spheres: &[], squares: &[] }, &[bounds]);
+            // Both ends close to where a line touches the sphere at its farthest, a little before the face or behind it.
+            let axis = (k / 2 % 3) as usize;
+            let off = [0.0, 1e-3, 1e-5, -1e-4, -0.2, -4.0, -40.0, 30.0];
+            let end = |salt: u32| {
+                let [a, b, c, _] = random4(k, salt, 0, 3);
+                let reach = [1.0, 300.0][(k / 6 % 2) as usize];
+                let mut point = sphere.center + (Vec3::new(a, b, c) - 0.5) * reach;
+                point[axis] = bounds.1[axis] + off[(c * 8.0) as usize % 8] * (0.5 + b);
+                point.clamp(room.0, room.1)
+            };
+            let (from, to) = (end(0), end(1));
+            let ends = sides_of(&planes, to, room);
+            let mut start = Sides::default();
+            let face = |beyond: glam::BVec3| beyond.bitmask();
+            start.add_faces(0, face(from.cmple(bounds.0)) | face(from.cmpge(bounds.1)) << 3);
+            for rules in [Rules::Original, Rules::Repaired] {
+                let ray = shadow_ray(rules, from, to - from, spawn_epsilon(rules, from, 300.0));
+                let (hit, may) = (intersect_sphere(sphere, &ray, rules).is_some(), start.shared(ends).may_meet(0));
+                assert!(!hit || may, "{sphere:?} between {from} and {to}");
+                claimed += u32::from(!may);
+                hits += u32::from(hit);
+            }
+        }
+        println!("{claimed} of 800000 need no test, {hits} are hit");
+        assert!(claimed > 100_000 && hits > 10_000);
     }
 
     #[test]
@@ -199,12 +344,21 @@ mod tests {
         root.set_child(0, (Vec3::splat(-4.0), Vec3::splat(4.0)), ChildRef::Square(0));
         let geometry = Geometry { nodes: &[root], triangles: &[], spheres: &[], squares: &[square] };
         let tracer = Tracer::new(geometry, Rules::Original, Simd::Off);
+        let walls = |vpls: &[Vpl]| Walls::new(&tracer, &LightTree::build(vpls, TreeLayout::Wide));
         let sides = |heights: &[f32]| {
-            let vpls: Vec<Vpl> = heights.iter().map(|&y| vpl(y)).collect();
-            Walls::new(&tracer, &LightTree::build(&vpls, TreeLayout::Wide)).of_block(0)
+            let sides = walls(&heights.iter().map(|&y| vpl(y)).collect::<Vec<_>>()).sides(0);
+            (sides.front & 1, sides.back & 1)
         };
-        assert_eq!(sides(&[-2.0, -3.0]), Sides { front: 1, back: 0 });
-        assert_eq!(sides(&[2.0, 3.0]), Sides { front: 0, back: 1 });
-        assert_eq!(sides(&[2.0, -3.0]), Sides::default());
+        assert_eq!(sides(&[-2.0, -3.0]), (1, 0));
+        assert_eq!(sides(&[2.0, 3.0]), (0, 1));
+        assert_eq!(sides(&[2.0, -3.0]), (0, 0));
+        assert_eq!(sides(&[2.0, 30.0]), (0, 0), "outside of the room");
+        let is_turned_away = |vpls: &[Vpl], normal: Vec3| {
+            let walls = walls(vpls);
+            walls.is_turned_away(0, walls.outlook(normal))
+        };
+        assert!(is_turned_away(&[vpl(2.0), vpl(3.0)], Vec3::Y));
+        assert!(!is_turned_away(&[vpl(2.0), vpl(3.0)], Vec3::NEG_Y));
+        assert!(!is_turned_away(&[vpl(2.0), Vpl { direction: Vec3::X, ..vpl(3.0) }], Vec3::Y));
     }
 }

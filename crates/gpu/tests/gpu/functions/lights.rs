@@ -2,11 +2,12 @@
 
 use crate::functions::case::Case;
 use crate::functions::table::{Row, twin, unlike};
+use crate::functions::word::Words;
 use glam::Vec3;
 use lightcuts_kernel::light::{emission_cosine, to_light};
 use lightcuts_kernel::light_tree::{decide, is_relevant, relevance_bounds};
 use lightcuts_kernel::optics::{reflect_at, refract_at};
-use lightcuts_kernel::phong::{Incidence, incidence, phong, phong_vpl, vpl_incidence};
+use lightcuts_kernel::phong::{Incidence, VplIncidence, incidence, phong, phong_vpl, vpl_incidence};
 use lightcuts_kernel::photon::{PhotonStart, photon_start};
 use lightcuts_kernel::ray::Ray;
 
@@ -25,15 +26,15 @@ pub(crate) const ROWS: [Row; 13] = [
     unlike(
         "vpl_incidence",
         "let at = vpl_incidence(get_Vpl(), get_vec3_f32(), get_vec3_f32());
-        put_bool(is_incident(at));
-        if (is_incident(at)) { put_Incidence(at); }",
+        put_bool(at.cosines > 0.0);
+        if (at.cosines > 0.0) { put_VplIncidence(at); }",
         |c| put_incidence(c, vpl_incidence(&c.vpl(), c.point(), c.direction())),
     ),
     twin("phong", |c| {
         let (light, material, at) = (c.light(), c.material(), at(c));
         c.put(phong(&light, &material, &at, c.direction(), c.point(), c.rules()));
     }),
-    twin("phong_vpl", |c| c.put(phong_vpl(&c.vpl(), c.color(), &at(c)))),
+    twin("phong_vpl", |c| c.put(phong_vpl(&c.vpl(), c.color(), &vpl_at(c)))),
     twin("reflect_at", |c| c.put(reflect_at(c.direction(), c.direction()))),
     // No refracted ray is the zero vector on devices.
     twin("refract_at", |c| {
@@ -50,7 +51,7 @@ pub(crate) const ROWS: [Row; 13] = [
     twin("decide", |c| c.put(decide(&c.cluster(), c.point(), c.take(|| threshold(c))))),
 ];
 
-fn put_incidence(c: &Case<'_>, at: Option<Incidence>) {
+fn put_incidence(c: &Case<'_>, at: Option<impl Words + Copy>) {
     c.put(at.is_some());
     if let Some(at) = at {
         c.put(at);
@@ -60,6 +61,14 @@ fn put_incidence(c: &Case<'_>, at: Option<Incidence>) {
 /// A light that neither faces away nor is faced away from.
 fn at(c: &Case<'_>) -> Incidence {
     c.take(|| Incidence { to_light: c.raw_point(), cos_theta: c.raw_fraction(), cos_phi: c.raw_fraction() })
+}
+
+/// The same of a VPL.
+fn vpl_at(c: &Case<'_>) -> VplIncidence {
+    c.take(|| {
+        let (to_light, dist_sq) = (c.raw_point(), c.raw_point().length_squared());
+        VplIncidence { to_light, cosines: c.raw_fraction() * dist_sq, dist_sq }
+    })
 }
 
 /// A ratio of refractive indices, that of nothing included.

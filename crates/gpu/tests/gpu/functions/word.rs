@@ -10,7 +10,7 @@ use lightcuts_kernel::light::{Light, Vpl};
 use lightcuts_kernel::light_tree::{Decision, LightCluster, RelevanceBounds};
 use lightcuts_kernel::material::Material;
 use lightcuts_kernel::packed_tree::PackedLightNode;
-use lightcuts_kernel::phong::Incidence;
+use lightcuts_kernel::phong::{Incidence, VplIncidence};
 use lightcuts_kernel::photon::{PhotonStart, PhotonTarget};
 use lightcuts_kernel::ray::{Hit, Ray};
 use lightcuts_kernel::surface::Surface;
@@ -148,6 +148,7 @@ records! {
     PackedLightNode { lower, intensity, extent_xy, extent_z_spread, axis, intensities }
     PixelFilter { kind, radius, alpha, mitchell_b, mitchell_c, padding }
     Incidence { to_light, cos_theta, cos_phi }
+    VplIncidence { to_light, cosines, dist_sq }
     PhotonTarget { center, radius, light, object, side, padding }
     PhotonStart { ray, area }
 }
