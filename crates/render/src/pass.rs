@@ -14,9 +14,15 @@ use lightcuts_kernel::ray::Ray;
 use lightcuts_kernel::rng::random4;
 use lightcuts_world::bvh::LANES;
 
-/// Rows whose camera rays look together, and the width of their blocks of eight neighbours.
-const ROWS: u32 = 2;
-const BLOCK_WIDTH: u32 = LANES as u32 / ROWS;
+/// Camera rays that look together: those of a square of so many rows, or one a little wider, eight neighbours after the other.
+const TOGETHER: usize = 32;
+const ROWS: u32 = 4;
+const WIDTH: u32 = TOGETHER as u32 / ROWS;
+
+/// The place of a pixel, by its column and its row, in the order in which camera rays look.
+fn order(i: u32, row: u32) -> (u32, u32, u32) {
+    (i / WIDTH, row / 2, i / (LANES as u32 / 2))
+}
 
 impl Placement {
     /// `samples` camera rays are to place as many VPLs, on average, as the thesis' picture of one per pixel: VPLs are not
@@ -97,8 +103,8 @@ struct Sample {
 }
 
 impl Worker<'_> {
-    /// Renders a few rows of pixels: camera rays look together, eight neighbours at a time, and each goes on alone, in the order of
-    /// the pixels.
+    /// Renders a few rows of pixels: camera rays look together with their neighbours, and each goes on alone, in the order of the
+    /// pixels.
     fn render_rows(&mut self, pixels: &[(u32, u32)]) {
         let view = &self.pass.view;
         self.samples.clear();
@@ -106,13 +112,20 @@ impl Worker<'_> {
             self.add_samples(place, i, j);
         }
         let samples = std::mem::take(&mut self.samples);
-        let mut order: Vec<usize> = (0..samples.len()).collect();
-        order.sort_by_key(|&k| pixels[samples[k].place].0 / BLOCK_WIDTH);
+        let mut looking: Vec<usize> = (0..samples.len()).collect();
+        let bottom = pixels[0].1;
+        looking.sort_by_key(|&k| {
+            let (i, j) = pixels[samples[k].place];
+            order(i, j - bottom)
+        });
         let mut firsts = vec![First::default(); samples.len()];
-        for group in order.chunks(LANES) {
-            let ray = |lane: usize| samples[group[lane.min(group.len() - 1)]].ray;
-            for (&k, first) in group.iter().zip(self.shader.look(&std::array::from_fn(ray), group.len())) {
-                firsts[k] = first;
+        let (mut rays, mut found) = (Vec::with_capacity(TOGETHER), [First::default(); TOGETHER]);
+        for together in looking.chunks(TOGETHER) {
+            rays.clear();
+            rays.extend(together.iter().map(|&k| samples[k].ray));
+            self.shader.look(&rays, &mut found[..together.len()]);
+            for (&k, found) in together.iter().zip(found) {
+                firsts[k] = found;
             }
         }
         let seen = self.result.seen.len();

@@ -106,26 +106,26 @@ impl<'a> Shader<'a> {
         &self.world.materials[found.surface.material as usize]
     }
 
-    /// What neighbouring camera rays find, of eight the first `count`, and the VPLs' light there.
-    pub(crate) fn look(&mut self, rays: &[Ray; LANES], count: usize) -> [First; LANES] {
-        let hits = self.tracer.closest8(rays);
-        let mut firsts = [First::default(); LANES];
-        for ((ray, hit), first) in rays.iter().zip(hits).zip(&mut firsts).take(count) {
-            first.found = self.found(ray, hit);
+    /// What neighbouring camera rays find, and the VPLs' light there.
+    pub(crate) fn look(&mut self, rays: &[Ray], firsts: &mut [First]) {
+        for (rays, firsts) in rays.chunks(LANES).zip(firsts.chunks_mut(LANES)) {
+            let hits = self.tracer.closest8(&std::array::from_fn(|lane| rays[lane.min(rays.len() - 1)]));
+            for ((ray, hit), first) in rays.iter().zip(hits).zip(firsts) {
+                *first = First { found: self.found(ray, hit), gathered: None };
+            }
         }
         // Among few spheres and squares alone, eight VPLs for one point are as quick: there is no way down a hierarchy to share.
         if let Lighting::Vpls(vpls) = self.lighting
             && !self.tracer.geometry.triangles.is_empty()
         {
-            self.gather_together(&vpls, &mut firsts);
+            self.gather_together(&vpls, firsts);
         }
-        firsts
     }
 
-    fn gather_together(&mut self, vpls: &VplLighting<'_>, firsts: &mut [First; LANES]) {
-        let mut places = Vec::with_capacity(LANES);
-        let mut receivers = Vec::with_capacity(LANES);
-        let (mut all_visits, mut ends) = (Vec::with_capacity(LANES), Vec::with_capacity(LANES));
+    fn gather_together(&mut self, vpls: &VplLighting<'_>, firsts: &mut [First]) {
+        let mut places = Vec::with_capacity(firsts.len());
+        let mut receivers = Vec::with_capacity(firsts.len());
+        let (mut all_visits, mut ends) = (Vec::with_capacity(firsts.len()), Vec::with_capacity(firsts.len()));
         self.candidates_together.clear();
         for (place, first) in firsts.iter().enumerate() {
             let Some(found) = first.found.filter(|found| self.material(found).local != 0.0) else { continue };

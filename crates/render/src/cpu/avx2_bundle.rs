@@ -8,8 +8,7 @@
 
 use super::avx2_packet::{Packet, meet, sphere_from};
 use super::avx2_trace::{
-    Wide3, WideRay, any_hit, block, closest_hit, cross_triangles, lanes, load, nearer_hit, other_hit, splat_lane,
-    splat3, spread, store,
+    Wide3, WideRay, any_hit, block, closest_hit, lanes, load, nearer_hit, other_hit, splat3, spread, store,
 };
 use super::stack::Stack;
 use super::tracer::Tracer;
@@ -17,7 +16,7 @@ use super::walls::FEW;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square, min_determinant};
 use lightcuts_kernel::ray::{Hit, NONE, Ray, SLAB_SLACK};
-use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE, TriangleBlock};
+use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE};
 use std::arch::x86_64::{
     __m256, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_blendv_ps, _mm256_castps_si256,
     _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpgt_epi32, _mm256_cvtss_f32, _mm256_max_ps, _mm256_min_ps,
@@ -104,16 +103,6 @@ impl<'a> Bundle<'a> {
         meet(self.packet.origin, self.reciprocal, self.packet.t_min, limit, (splat3(lower), splat3(upper)))
     }
 
-    /// The triangle of a lane: rays that hit it, with t, u and v; the arithmetic of `intersect_triangle`.
-    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    #[inline]
-    fn intersect(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
-        let triangle =
-            [splat_lane(&block.corner, lane), splat_lane(&block.edge1, lane), splat_lane(&block.edge2, lane)];
-        let (inside, [t, u, v]) = cross_triangles(self.packet.origin, self.packet.direction, triangle, least);
-        (_mm256_and_ps(inside, self.packet.between_ends(t)), [t, u, v])
-    }
-
     /// Which of the rays in `asked` hit a triangle.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     pub(super) fn any_hits(&self, geometry: &Geometry<'_>, rules: Rules, asked: u32) -> u32 {
@@ -149,7 +138,7 @@ impl<'a> Bundle<'a> {
                         if active == 0 {
                             break;
                         }
-                        let hit = _mm256_movemask_ps(self.intersect(block, lane, least).0) as u32 & active;
+                        let hit = _mm256_movemask_ps(self.packet.intersect(block, lane, least).0) as u32 & active;
                         active &= !hit;
                         open &= !hit;
                     }
@@ -216,7 +205,7 @@ impl<'a> Bundle<'a> {
             ChildRef::Triangles(index) => {
                 let block = &geometry.triangles[index as usize];
                 for lane in (0..LANES).take_while(|&lane| block.primitive[lane] != NONE) {
-                    let (hit, values) = self.intersect(block, lane, min_determinant(rules));
+                    let (hit, values) = self.packet.intersect(block, lane, min_determinant(rules));
                     best.take_nearer(hit, values, block.primitive[lane]);
                 }
             }

@@ -2,12 +2,12 @@
 
 #![allow(unsafe_code)]
 
-use super::avx2_shadows::{MOST, Shadow, Source};
+use super::avx2_shadows::{MOST, Shadow, Source, trace};
 use super::avx2_trace::{Wide3, dot, load, load3, splat_lane, splat3, spread, store, sub};
 use super::gather::{Blocks, Candidates, Decisions, Gathered, Receiver};
 use super::stack::Stack;
 use super::tracer::Tracer;
-use super::walls::Shared;
+use super::walls::{Outlook, Shared, Walls};
 use crate::light_node::{LANES, LightNode, VplBlock};
 use glam::Vec3;
 use lightcuts_kernel::light_tree::BOUND_MARGIN;
@@ -85,37 +85,31 @@ impl Cosines {
     }
 }
 
-/// How VPLs would light points: eight of a block one point, or one of them eight points. With the ray, twin of `VplIncidence`.
-#[derive(Clone, Copy)]
-struct Light {
-    cosines: __m256,
-    block: u32,
-    /// Of the block, where it is one VPL.
-    lane: u32,
-}
-
 /// Shadow rays of the lanes in `chosen` that face their VPL, or that their VPL faces; twin of `vpl_incidence`.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-fn shadow(
-    direction: Wide3,
-    cosines: &Cosines,
-    (block, lane): (u32, usize),
-    chosen: u32,
-    shared: Shared,
-) -> Shadow<Light> {
+fn shadow(direction: Wide3, cosines: &Cosines, (block, lane): (u32, usize), chosen: u32, shared: Shared) -> Shadow {
     let product = _mm256_mul_ps(cosines.theta, cosines.phi);
     let facing = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(product, _mm256_setzero_ps())) as u32;
-    let light = Light { cosines: product, block, lane: lane as u32 };
-    Shadow { direction, length_sq: cosines.dist_sq, shared, open: facing & chosen, light }
+    let open = facing & chosen;
+    Shadow {
+        direction,
+        length_sq: cosines.dist_sq,
+        shared,
+        open,
+        cosines: product,
+        block,
+        lane: lane as u32,
+        source: 0,
+    }
 }
 
-impl Shadow<Light> {
+impl Shadow {
     /// Adds the light of VPLs that are visible; twin of `phong_vpl`.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn add(&self, sums: &mut Wide3, colors: Wide3, attenuation: __m256, diffuse: Wide3) {
-        let factor = _mm256_mul_ps(attenuation, _mm256_div_ps(self.light.cosines, self.length_sq));
+        let factor = _mm256_mul_ps(attenuation, _mm256_div_ps(self.cosines, self.length_sq));
         let factor = _mm256_and_ps(factor, spread(self.open));
         for channel in 0..3 {
             let color = _mm256_mul_ps(_mm256_mul_ps(colors[channel], diffuse[channel]), factor);
@@ -126,7 +120,7 @@ impl Shadow<Light> {
 
 /// Shadow rays that are still to be traced. First those of many VPLs, then their ways, then their light: a processor can begin with
 /// the next few while it waits for what the first ones need, as long as little else lies between them.
-type Batch = Stack<Shadow<Light>, MOST>;
+type Batch = Stack<Shadow, MOST>;
 
 /// What the chosen VPLs add; twin of the plain `evaluate`.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
@@ -144,12 +138,12 @@ pub(super) fn evaluate(
     source.look(&tracer.geometry, walls);
     let mut batch = Batch::new();
     let mut sums = [_mm256_setzero_ps(); 3];
-    let mut trace = |batch: &mut Batch, size: usize| {
+    let mut finish = |batch: &mut Batch, size: usize| {
         batch.size = size;
-        source.trace(tracer, batch.as_mut_slice());
+        trace(tracer, std::slice::from_ref(&source), batch.as_mut_slice(), false);
         let mut total = sums;
         for shadow in batch.as_slice() {
-            let block = &vpls[shadow.light.block as usize];
+            let block = &vpls[shadow.block as usize];
             shadow.add(&mut total, load3(&block.diffuse), load(&block.attenuation), diffuse);
         }
         sums = total;
@@ -172,67 +166,123 @@ pub(super) fn evaluate(
         shadow_rays += u64::from(shadow.open.count_ones());
         size = batch.put_if(size, shadow, shadow.open != 0);
         if size == MOST {
-            trace(&mut batch, size);
+            finish(&mut batch, size);
             size = 0;
         }
     }
-    trace(&mut batch, size);
+    finish(&mut batch, size);
     let [r, g, b] = [store(sums[0]), store(sums[1]), store(sums[2])];
     let color = (0..LANES).fold(Vec3::ZERO, |total, lane| total + Vec3::new(r[lane], g[lane], b[lane]));
     Gathered { color, chosen: all_chosen, shadow_rays }
 }
 
-/// Points that gather together, component by component; the last one fills what is left of the eight.
-struct Points {
-    count: usize,
+/// Up to eight points that gather together, component by component; the last one fills what is left of the eight.
+struct Points<'a> {
     point: Wide3,
     normal: Wide3,
-    /// The normal if it is the same for all, else no number.
-    common_normal: Vec3,
     diffuse: Wide3,
-    epsilon: __m256,
+    outlook: Outlook,
+    /// Of each point, what is still to come.
+    candidates: &'a [&'a [Candidates]],
+    next: [usize; LANES],
+    /// Of the current block the points that have each VPL, and those whose VPLs are certain, a bit each.
+    asked: [u32; LANES],
+    certain: u32,
+    /// By lane of the VPLs, as one point sums them.
+    sums: [Wide3; LANES],
+    chosen: __m256i,
+    shadow_rays: __m256i,
 }
 
-impl Points {
+impl<'a> Points<'a> {
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    fn new(at: &[Receiver]) -> Self {
+    fn new(at: &[Receiver], candidates: &'a [&'a [Candidates]], walls: &Walls) -> Self {
         let lane = |lane: usize| &at[lane.min(at.len() - 1)];
         let wide3 = |of: &dyn Fn(&Receiver) -> Vec3| -> [[f32; LANES]; 3] {
             std::array::from_fn(|axis| std::array::from_fn(|k| of(lane(k))[axis]))
         };
-        let epsilon = std::array::from_fn(|k| lane(k).epsilon);
         let normal = at[0].normal;
+        let common = if at.iter().all(|at| at.normal == normal) { normal } else { Vec3::NAN };
         Self {
-            count: at.len(),
-            common_normal: if at.iter().all(|at| at.normal == normal) { normal } else { Vec3::NAN },
             point: load3(&wide3(&|at| at.point)),
             normal: load3(&wide3(&|at| at.normal)),
             diffuse: load3(&wide3(&|at| at.diffuse)),
-            epsilon: load(&epsilon),
+            outlook: walls.outlook(common),
+            candidates,
+            next: [0; LANES],
+            asked: [0; LANES],
+            certain: 0,
+            sums: [[_mm256_setzero_ps(); 3]; LANES],
+            chosen: _mm256_setzero_si256(),
+            shadow_rays: _mm256_setzero_si256(),
         }
     }
 
-    /// Which of the points in `asked` have a VPL, those of `tested` only where its relevance reaches the threshold or they are
-    /// certain; and their shadow rays.
+    /// The first block that is still to come.
+    fn next_block(&self) -> Option<u32> {
+        let ahead = self.candidates.iter().zip(self.next).filter_map(|(candidates, next)| candidates.get(next));
+        ahead.map(|ahead| ahead.block).min()
+    }
+
+    /// Goes on to a block, if that is the next one.
+    fn ask(&mut self, block: u32) {
+        let mut lanes = [0_u8; LANES];
+        self.certain = 0;
+        for (k, candidates) in self.candidates.iter().enumerate() {
+            let Some(ahead) = candidates.get(self.next[k]).filter(|ahead| ahead.block == block) else { continue };
+            self.next[k] += 1;
+            self.certain |= u32::from(ahead.certain) << k;
+            lanes[k] = ahead.lanes;
+        }
+        self.asked = transposed(lanes).map(u32::from);
+    }
+
+    /// The shadow rays to a VPL of the current block, counted: of the points that have it, where they do not know it for certain
+    /// only those where its relevance reaches the threshold. None, where neither lights the other.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn shadow(
-        &self,
+        &mut self,
         block: &VplBlock,
         (number, lane): (u32, usize),
-        (asked, tested): (u32, Option<(f32, u32)>),
+        threshold: Option<f32>,
+        is_turned_away: bool,
         shared: Shared,
-    ) -> (u32, Shadow<Light>) {
+    ) -> Option<Shadow> {
+        let asked = self.asked[lane];
+        let tested = threshold.filter(|_| asked & !self.certain != 0);
+        if asked == 0 || is_turned_away && tested.is_none() {
+            count(&mut self.chosen, asked);
+            return None;
+        }
         let to_light = sub(splat_lane(&block.position, lane), self.point);
         let cosines = Cosines::new(to_light, self.normal, splat_lane(&block.direction, lane));
-        let chosen = match tested {
-            Some((threshold, certain)) => {
-                let intensity = _mm256_set1_ps(block.intensity[lane % LANES]);
-                asked & (certain | relevant(intensity, cosines.phi, cosines.dist_sq, threshold))
+        let chosen = tested.map_or(asked, |threshold| {
+            let intensity = _mm256_set1_ps(block.intensity[lane % LANES]);
+            asked & (self.certain | relevant(intensity, cosines.phi, cosines.dist_sq, threshold))
+        });
+        let shadow = shadow(to_light, &cosines, (number, lane), chosen, shared);
+        count(&mut self.chosen, chosen);
+        count(&mut self.shadow_rays, shadow.open);
+        Some(shadow)
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    fn gathered(&self) -> [Gathered; LANES] {
+        let mut total = [_mm256_setzero_ps(); 3];
+        for sum in self.sums {
+            for channel in 0..3 {
+                total[channel] = _mm256_add_ps(total[channel], sum[channel]);
             }
-            None => asked,
-        };
-        (chosen, shadow(to_light, &cosines, (number, lane), chosen, shared))
+        }
+        let [r, g, b] = [store(total[0]), store(total[1]), store(total[2])];
+        let whole = |counts: __m256i| store(_mm256_castsi256_ps(counts)).map(f32::to_bits);
+        let (chosen, shadow_rays) = (whole(self.chosen), whole(self.shadow_rays));
+        std::array::from_fn(|k| Gathered {
+            color: Vec3::new(r[k], g[k], b[k]),
+            chosen: chosen[k],
+            shadow_rays: u64::from(shadow_rays[k]),
+        })
     }
 }
 
@@ -243,8 +293,8 @@ fn count(counts: &mut __m256i, mask: u32) {
     *counts = _mm256_sub_epi32(*counts, _mm256_castps_si256(spread(mask)));
 }
 
-/// Twin of [`evaluate`] for up to eight points, each with its candidates in the order of their blocks: one VPL at a time for all
-/// points that have it, whose shadow rays go much the same way.
+/// Twin of [`evaluate`] for some points, each with its candidates in the order of their blocks: one VPL at a time for all points
+/// that have it, whose shadow rays go much the same way.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn evaluate_together(
     tracer: &Tracer<'_>,
@@ -252,73 +302,48 @@ pub(super) fn evaluate_together(
     candidates: &[&[Candidates]],
     threshold: Option<f32>,
     at: &[Receiver],
-) -> [Gathered; LANES] {
+) -> Vec<Gathered> {
     let Blocks { vpls, walls } = blocks;
-    let zero = _mm256_setzero_ps();
-    let points = Points::new(at);
-    let outlook = walls.outlook(points.common_normal);
-    let mut source = Source::new(points.point, points.epsilon);
-    source.look(&tracer.geometry, walls);
-    let mut batch = Batch::new();
-    // By lane of the VPLs, as one point sums them.
-    let mut sums = [[zero; 3]; LANES];
-    let mut trace = |batch: &mut Batch, size: usize| {
+    let (mut points, mut sources) = (Vec::new(), Vec::new());
+    for (at, candidates) in at.chunks(LANES).zip(candidates.chunks(LANES)) {
+        points.push(Points::new(at, candidates, walls));
+        let epsilon = std::array::from_fn(|lane| at[lane.min(at.len() - 1)].epsilon);
+        let mut source = Source::new(points[sources.len()].point, load(&epsilon));
+        source.look(&tracer.geometry, walls);
+        sources.push(source);
+    }
+    let finish = |points: &mut [Points<'_>], batch: &mut Batch, size: usize| {
         batch.size = size;
-        source.trace(tracer, batch.as_mut_slice());
+        trace(tracer, &sources, batch.as_mut_slice(), true);
         for shadow in batch.as_slice() {
-            let (block, lane) = (&vpls[shadow.light.block as usize], shadow.light.lane as usize % LANES);
+            let (block, lane) = (&vpls[shadow.block as usize], shadow.lane as usize % LANES);
             let (colors, attenuation) = (splat_lane(&block.diffuse, lane), _mm256_set1_ps(block.attenuation[lane]));
-            shadow.add(&mut sums[lane], colors, attenuation, points.diffuse);
+            let points = &mut points[shadow.source as usize];
+            shadow.add(&mut points.sums[lane], colors, attenuation, points.diffuse);
         }
     };
-    let (mut all_chosen, mut shadow_rays) = (_mm256_setzero_si256(), _mm256_setzero_si256());
-    let mut next = [0_usize; LANES];
-    let mut size = 0;
-    loop {
-        let blocks_ahead = (0..points.count).filter_map(|k| candidates[k].get(next[k])).map(|ahead| ahead.block);
-        let Some(number) = blocks_ahead.min() else { break };
-        // Of each point the VPLs that it has; and which points have tested theirs.
-        let (mut lanes, mut certain) = ([0_u8; LANES], 0);
-        for k in 0..points.count {
-            let Some(ahead) = candidates[k].get(next[k]).filter(|ahead| ahead.block == number) else { continue };
-            next[k] += 1;
-            certain |= u32::from(ahead.certain || threshold.is_none()) << k;
-            lanes[k] = ahead.lanes;
+    let (mut batch, mut size) = (Batch::new(), 0);
+    while let Some(number) = points.iter().filter_map(Points::next_block).min() {
+        for points in &mut points {
+            points.ask(number);
         }
-        let asked = transposed(lanes).map(u32::from);
-        let (block, shared) = (&vpls[number as usize], source.shared(walls.sides(number)));
-        let is_turned_away = walls.is_turned_away(number, outlook);
-        for lane in (0..LANES).filter(|&lane| asked[lane] != 0) {
-            let tested = threshold.filter(|_| asked[lane] & !certain != 0).map(|threshold| (threshold, certain));
-            if is_turned_away && tested.is_none() {
-                count(&mut all_chosen, asked[lane]);
-                continue;
-            }
-            let (chosen, shadow) = points.shadow(block, (number, lane), (asked[lane], tested), shared);
-            count(&mut all_chosen, chosen);
-            count(&mut shadow_rays, shadow.open);
-            size = batch.put_if(size, shadow, shadow.open != 0);
-            if size == MOST {
-                trace(&mut batch, size);
-                size = 0;
+        let block = &vpls[number as usize];
+        for lane in 0..LANES {
+            for index in 0..points.len() {
+                let is_turned_away = walls.is_turned_away(number, points[index].outlook);
+                let shared = sources[index].shared(walls.sides(number));
+                let shadow = points[index].shadow(block, (number, lane), threshold, is_turned_away, shared);
+                let Some(shadow) = shadow else { continue };
+                size = batch.put_if(size, Shadow { source: index as u32, ..shadow }, shadow.open != 0);
+                if size == MOST {
+                    finish(&mut points, &mut batch, size);
+                    size = 0;
+                }
             }
         }
     }
-    trace(&mut batch, size);
-    let mut total = [zero; 3];
-    for sum in sums {
-        for channel in 0..3 {
-            total[channel] = _mm256_add_ps(total[channel], sum[channel]);
-        }
-    }
-    let [r, g, b] = [store(total[0]), store(total[1]), store(total[2])];
-    let whole = |counts: __m256i| store(_mm256_castsi256_ps(counts)).map(f32::to_bits);
-    let (all_chosen, shadow_rays) = (whole(all_chosen), whole(shadow_rays));
-    std::array::from_fn(|k| Gathered {
-        color: Vec3::new(r[k], g[k], b[k]),
-        chosen: all_chosen[k],
-        shadow_rays: u64::from(shadow_rays[k]),
-    })
+    finish(&mut points, &mut batch, size);
+    points.iter().flat_map(|points| points.gathered()).take(at.len()).collect()
 }
 
 /// Rows and columns of eight times eight bits exchanged (Warren 2012, "Hacker's Delight", 7-3).

@@ -9,7 +9,7 @@
 #![allow(unsafe_code)]
 
 use super::avx2_bundle::Bundle;
-use super::avx2_trace::{Wide3, any_hit, dot, lanes, load, splat3, sub};
+use super::avx2_trace::{Wide3, any_hit, cross_triangles, dot, lanes, load, splat_lane, splat3, sub};
 use super::tracer::{RayLanes, Tracer};
 use super::walls::FEW;
 use bytemuck::cast_ref;
@@ -17,7 +17,7 @@ use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square};
 use lightcuts_kernel::ray::{ORIGINAL_EPSILON, Ray, SLAB_SLACK};
-use lightcuts_world::bvh::{Geometry, LANES};
+use lightcuts_world::bvh::{Geometry, LANES, TriangleBlock};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NEQ_OQ, _mm256_add_ps, _mm256_and_ps,
     _mm256_andnot_ps, _mm256_blendv_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
@@ -43,6 +43,7 @@ pub(super) fn height_of(square: &Square, origin: Wide3) -> __m256 {
 }
 
 /// Eight rays that are not inside of anything.
+#[derive(Clone, Copy)]
 pub(super) struct Packet {
     pub(super) origin: Wide3,
     pub(super) direction: Wide3,
@@ -93,7 +94,7 @@ pub(super) fn occluded_lanes(tracer: &Tracer<'_>, rays: &RayLanes, asked: u32) -
 
 /// Twin of `kernel::ray::safe_reciprocal`.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-fn safe_reciprocal(c: __m256) -> __m256 {
+pub(super) fn safe_reciprocal(c: __m256) -> __m256 {
     let sign_bit = _mm256_set1_ps(-0.0);
     let tiny = _mm256_set1_ps(1e-20);
     let signed_tiny = _mm256_or_ps(tiny, _mm256_and_ps(sign_bit, c));
@@ -146,6 +147,16 @@ impl Packet {
             Some(bundle) => bundle.any_hits(geometry, *rules, near),
             None => self.singly::<false>(geometry, *rules, near),
         }
+    }
+
+    /// The triangle of a lane: rays that hit it, with t, u and v; the arithmetic of `intersect_triangle`.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    pub(super) fn intersect(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
+        let triangle =
+            [splat_lane(&block.corner, lane), splat_lane(&block.edge1, lane), splat_lane(&block.edge2, lane)];
+        let (inside, [t, u, v]) = cross_triangles(self.origin, self.direction, triangle, least);
+        (_mm256_and_ps(inside, self.between_ends(t)), [t, u, v])
     }
 
     /// Rays of `asked` that hit anything, one after the other; spheres and squares count where `OTHERS` says so.

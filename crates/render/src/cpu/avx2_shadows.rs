@@ -5,6 +5,7 @@
 
 #![allow(unsafe_code)]
 
+use super::avx2_fan::{PACKETS, miss_mesh};
 use super::avx2_packet::{Packet, height_of, sphere_from};
 use super::avx2_trace::{Wide3, lanes};
 use super::stack::Stack;
@@ -13,7 +14,7 @@ use super::walls::{FEW, Shared, Sides, Walls};
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::ray::ORIGINAL_EPSILON;
-use lightcuts_world::bvh::Geometry;
+use lightcuts_world::bvh::{Geometry, LANES};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_LE_OQ, _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps, _mm256_movemask_ps, _mm256_set1_ps,
     _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps,
@@ -37,9 +38,9 @@ pub(super) struct Source {
     sides: Sides,
 }
 
-/// Eight shadow rays, for the light of some VPLs.
+/// Eight shadow rays, and how the VPLs that they end at light the points if nothing is hit; with that, twin of `VplIncidence`.
 #[derive(Clone, Copy)]
-pub(super) struct Shadow<L> {
+pub(super) struct Shadow {
     /// To the VPLs, and its squared length.
     pub(super) direction: Wide3,
     pub(super) length_sq: __m256,
@@ -47,7 +48,13 @@ pub(super) struct Shadow<L> {
     pub(super) shared: Shared,
     /// Rays that are asked for and have hit nothing, a bit each.
     pub(super) open: u32,
-    pub(super) light: L,
+    /// Products of the cosines at both ends, times the squared lengths.
+    pub(super) cosines: __m256,
+    /// Where the VPLs are: a block, and the lane of it where they are one.
+    pub(super) block: u32,
+    pub(super) lane: u32,
+    /// Which of some sources they begin at.
+    pub(super) source: u32,
 }
 
 impl Source {
@@ -111,45 +118,66 @@ impl Source {
         };
         Packet { origin: self.origin, direction, t_min, t_max }
     }
+}
 
-    /// Closes the rays that hit anything. At most [`MOST`] packets.
-    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    pub(super) fn trace<L>(&self, tracer: &Tracer<'_>, shadows: &mut [Shadow<L>]) {
-        let Tracer { geometry, rules, .. } = tracer;
-        let packet = |shadow: &Shadow<L>| self.packet(*rules, shadow.direction, shadow.length_sq);
-        if geometry.spheres.len() > FEW || geometry.squares.len() > FEW {
-            for shadow in shadows {
-                shadow.open &= !packet(shadow).singly::<true>(geometry, *rules, shadow.open);
-            }
-            return;
+/// Closes the rays that hit anything. At most [`MOST`] packets; `is_fan` says that all rays of each end at one VPL.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+pub(super) fn trace(tracer: &Tracer<'_>, sources: &[Source], shadows: &mut [Shadow], is_fan: bool) {
+    let Tracer { geometry, rules, .. } = tracer;
+    let source = |shadow: &Shadow| &sources[shadow.source as usize];
+    let packet = |shadow: &Shadow| source(shadow).packet(*rules, shadow.direction, shadow.length_sq);
+    if geometry.spheres.len() > FEW || geometry.squares.len() > FEW {
+        for shadow in shadows {
+            shadow.open &= !packet(shadow).singly::<true>(geometry, *rules, shadow.open);
         }
-        for shadow in shadows.iter_mut() {
-            for index in lanes(shadow.shared.crossed(geometry.squares.len())) {
-                let height = self.heights.as_slice()[index];
-                shadow.open &= !packet(shadow).hits_square(&geometry.squares[index], height);
-            }
+        return;
+    }
+    for shadow in shadows.iter_mut() {
+        for index in lanes(shadow.shared.crossed(geometry.squares.len())) {
+            let height = source(shadow).heights.as_slice()[index];
+            shadow.open &= !packet(shadow).hits_square(&geometry.squares[index], height);
         }
-        for (number, (sphere, &from)) in geometry.spheres.iter().zip(self.spheres.as_slice()).enumerate() {
-            let mut near = 0_u32;
-            for (index, shadow) in shadows.iter().enumerate() {
-                near |= u32::from(shadow.shared.may_meet_sphere(number)) << index;
-            }
-            let mut met = 0_u32;
-            for index in lanes(near) {
-                let shadow = &shadows[index];
-                met |= u32::from(packet(shadow).line_meets_sphere(sphere, from, *rules) & shadow.open != 0) << index;
-            }
-            for index in lanes(met) {
-                let shadow = &mut shadows[index];
-                shadow.open &= !packet(shadow).hits_sphere(sphere, from, *rules);
-            }
+    }
+    for (number, sphere) in geometry.spheres.iter().enumerate() {
+        let mut near = 0_u32;
+        for (index, shadow) in shadows.iter().enumerate() {
+            near |= u32::from(shadow.shared.may_meet_sphere(number)) << index;
         }
-        if !geometry.triangles.is_empty() {
-            for shadow in shadows {
-                if shadow.shared.may_meet_mesh() {
-                    shadow.open = packet(shadow).miss_mesh(tracer, shadow.open);
-                }
-            }
+        let mut met = 0_u32;
+        for index in lanes(near) {
+            let shadow = &shadows[index];
+            let from = source(shadow).spheres.as_slice()[number];
+            met |= u32::from(packet(shadow).line_meets_sphere(sphere, from, *rules) & shadow.open != 0) << index;
+        }
+        for index in lanes(met) {
+            let shadow = &mut shadows[index];
+            let from = source(shadow).spheres.as_slice()[number];
+            shadow.open &= !packet(shadow).hits_sphere(sphere, from, *rules);
+        }
+    }
+    if geometry.triangles.is_empty() {
+        return;
+    }
+    if !is_fan {
+        for shadow in shadows.iter_mut().filter(|shadow| shadow.shared.may_meet_mesh()) {
+            shadow.open = packet(shadow).miss_mesh(tracer, shadow.open);
+        }
+        return;
+    }
+    let mut ahead = 0;
+    while let Some(&Shadow { block, lane, .. }) = shadows.get(ahead) {
+        // The packets to one VPL follow each other.
+        let (mut fan, mut places) = (Stack::<(Packet, u32), PACKETS>::new(), [0; PACKETS]);
+        while fan.size < PACKETS
+            && let Some(shadow) = shadows.get(ahead).filter(|shadow| (shadow.block, shadow.lane) == (block, lane))
+        {
+            places[fan.size] = ahead;
+            fan.push_if((packet(shadow), shadow.open), shadow.shared.may_meet_mesh() && shadow.open != 0);
+            ahead += 1;
+        }
+        let open = miss_mesh(tracer, fan.as_slice());
+        for (number, &place) in places[..fan.size].iter().enumerate() {
+            shadows[place].open = open >> (LANES * number) & ALL as u32;
         }
     }
 }

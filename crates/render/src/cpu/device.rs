@@ -11,26 +11,41 @@ use lightcuts_image::{Image, ToneMapping};
 use lightcuts_kernel::light::Vpl;
 use lightcuts_world::World;
 use rayon::prelude::*;
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Tiles that are rendered between two looks at the monitor.
 const BATCH: usize = 64;
 
 /// The processor, on the threads of the current rayon pool.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub struct CpuDevice<'a> {
     world: &'a World,
     simd: Simd,
+    /// Those of the last light tree, by its number.
+    walls: Mutex<Option<(u64, Arc<Walls>)>>,
 }
 
 impl<'a> CpuDevice<'a> {
     /// The processor, made ready for passes over a world.
     pub fn new(world: &'a World, simd: Simd) -> Self {
-        Self { world, simd }
+        Self { world, simd, walls: Mutex::new(None) }
     }
 
     fn tracer(&self, view: &View<'_>) -> Tracer<'a> {
         Tracer::new(self.world.shapes.geometry(), view.rules, self.simd)
+    }
+
+    fn walls(&self, tracer: &Tracer<'_>, tree: &LightTree) -> Arc<Walls> {
+        let known = || self.walls.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((id, walls)) = &*known()
+            && *id == tree.id()
+        {
+            return Arc::clone(walls);
+        }
+        // Not while others wait: what is made in parallel may turn to another picture meanwhile.
+        let walls = Arc::new(Walls::new(tracer, tree));
+        *known() = Some((tree.id(), Arc::clone(&walls)));
+        walls
     }
 }
 
@@ -51,8 +66,8 @@ impl Device for CpuDevice<'_> {
     ) -> Result<Vec<Option<TileResult>>, DeviceFault> {
         let tracer = self.tracer(&pass.view);
         let walls = match pass.lighting {
-            Lighting::Vpls(vpls) => Walls::new(&tracer, vpls.tree),
-            Lighting::Scene { .. } => Walls::default(),
+            Lighting::Vpls(vpls) => self.walls(&tracer, vpls.tree),
+            Lighting::Scene { .. } => Arc::default(),
         };
         let results = tiles
             .par_iter()

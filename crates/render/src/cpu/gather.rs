@@ -245,8 +245,8 @@ pub(crate) fn evaluate(
     gathered
 }
 
-/// [`evaluate`] for up to eight points, each with its candidates in the order of their blocks; of those that are not there nothing
-/// is to be told from the result. Quicker than one by one where points are neighbours.
+/// [`evaluate`] for some points, each with its candidates in the order of their blocks. Quicker than one by one where points are
+/// neighbours, in the order of how near they are.
 #[allow(unsafe_code)]
 pub(crate) fn evaluate_together(
     tracer: &Tracer<'_>,
@@ -254,15 +254,12 @@ pub(crate) fn evaluate_together(
     candidates: &[&[Candidates]],
     threshold: Option<f32>,
     at: &[Receiver],
-) -> [Gathered; LANES] {
+) -> Vec<Gathered> {
     #[cfg(target_arch = "x86_64")]
     if tracer.avx2 && at.len() > 1 {
         // SAFETY: `avx2` is set only where the machine has the feature.
         return unsafe { super::avx2_gather::evaluate_together(tracer, blocks, candidates, threshold, at) };
     }
-    let none = Gathered { color: Vec3::ZERO, chosen: 0, shadow_rays: 0 };
-    std::array::from_fn(|k| match (at.get(k), candidates.get(k)) {
-        (Some(at), Some(candidates)) => evaluate(tracer, blocks, candidates, threshold, at),
-        _ => none,
-    })
+    let each = |(at, candidates): (&Receiver, &&[Candidates])| evaluate(tracer, blocks, candidates, threshold, at);
+    at.iter().zip(candidates).map(each).collect()
 }

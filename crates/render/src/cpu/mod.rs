@@ -6,6 +6,8 @@
 #[cfg(target_arch = "x86_64")]
 mod avx2_bundle;
 #[cfg(target_arch = "x86_64")]
+mod avx2_fan;
+#[cfg(target_arch = "x86_64")]
 mod avx2_gather;
 #[cfg(target_arch = "x86_64")]
 mod avx2_packet;

@@ -256,26 +256,28 @@ mod tests {
             for k in 0..200 {
                 let tracer = Tracer::new(world.shapes.geometry(), RULES[(k % 2) as usize], Simd::Auto);
                 let [a, b, c, _] = random4(k, 2, 0, 17);
-                let spread = if k % 3 == 0 { 300.0 } else { 4.0 };
-                let receivers: [Receiver; LANES] = std::array::from_fn(|lane| {
+                let spread = [300.0, 4.0, 20.0][(k % 3) as usize];
+                let receivers: [Receiver; 4 * LANES] = std::array::from_fn(|lane| {
                     let [d, e, f, _] = random4(k, 8 + lane as u32, 0, 17);
+                    let turned = if k % 5 < 2 { Vec3::ZERO } else { Vec3::new(d, e, f) * 0.2 };
                     Receiver {
                         point: (Vec3::new(a, b, c) - 0.5) * 390.0 + (Vec3::new(d, e, f) - 0.5) * spread,
-                        normal: (ray(k).direction + Vec3::new(d, e, f) * 0.2).normalize(),
+                        normal: (ray(k).direction + turned).normalize(),
                         diffuse: Vec3::new(0.5, d, 0.9),
                         epsilon: 0.01 + e * 0.01,
                     }
                 });
                 for threshold in [None, Some(2e-6), Some(1e-4)] {
-                    let mut lists: [Vec<Candidates>; LANES] = Default::default();
-                    for (list, at) in lists.iter_mut().zip(&receivers) {
+                    let lists = receivers.each_ref().map(|at| {
+                        let mut list = Vec::new();
                         if let Some(threshold) = threshold {
-                            select(&tree, tracer.avx2, at.point, threshold, list);
+                            select(&tree, tracer.avx2, at.point, threshold, &mut list);
                         } else {
                             list.extend(tree.every_block(true));
                         }
-                    }
-                    let count = 2 + (k % 7) as usize;
+                        list
+                    });
+                    let count = 2 + (k % 31) as usize;
                     let lists = lists.each_ref().map(|list| &list[..]);
                     let walls = Walls::new(&tracer, &tree);
                     let blocks = &Blocks { vpls: &tree.blocks, walls: &walls };

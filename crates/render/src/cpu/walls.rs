@@ -62,7 +62,7 @@ impl Sides {
 impl Shared {
     /// Of so many squares those that a ray may cross.
     pub(crate) fn crossed(self, squares: usize) -> u32 {
-        ((1_u64 << squares) - 1 & !self.0) as u32
+        (((1 << squares) - 1) & !self.0) as u32
     }
 
     /// Whether a ray may meet the mesh.
