@@ -44,15 +44,22 @@ pub(crate) struct Measured {
     pub(crate) total_cpu_s: f64,
 }
 
-/// Renders a scene several times in each configuration by turns, so that a slow minute of the machine hits both; returns
-/// for each configuration its counts and the median of its times.
-pub(crate) fn interleaved(cli: &Path, case: &Case, models: &Path, folder: &Path, runs: u32) -> Result<[Measured; 2]> {
+/// Renders a scene several times in each configuration by turns, on some threads, so that a slow minute of the machine hits both;
+/// returns for each configuration its counts and the median of its times.
+pub(crate) fn interleaved(
+    cli: &Path,
+    case: &Case,
+    threads: usize,
+    models: &Path,
+    folder: &Path,
+    runs: u32,
+) -> Result<[Measured; 2]> {
     let mut measured = [Vec::new(), Vec::new()];
     for run in 1..=runs {
         for configuration in Configuration::ALL {
-            let result = once(cli, case, configuration, models, folder)
-                .with_context(|| format!("{}, {}", case.title, configuration.title()))?;
-            println!("{} {run}/{runs} {}: {:.2} CPU s", case.title, configuration.title(), result.total_cpu_s);
+            let title = format!("{}, {}, {threads} threads", case.title, configuration.title());
+            let result = once(cli, case, configuration, threads, models, folder).with_context(|| title.clone())?;
+            println!("{title}, {run}/{runs}: {:.2} CPU s", result.total_cpu_s);
             measured[configuration as usize].push(result);
         }
     }
@@ -62,11 +69,18 @@ pub(crate) fn interleaved(cli: &Path, case: &Case, models: &Path, folder: &Path,
     }))
 }
 
-fn once(cli: &Path, case: &Case, configuration: Configuration, models: &Path, folder: &Path) -> Result<Measured> {
+fn once(
+    cli: &Path,
+    case: &Case,
+    configuration: Configuration,
+    threads: usize,
+    models: &Path,
+    folder: &Path,
+) -> Result<Measured> {
     let stats = folder.join("stats.json");
     let mut command = Command::new(cli);
     command.arg("render").arg(place::root().join("scenes/thesis").join(case.file));
-    command.args(["--reproduce", "--quiet", "--gather", configuration.strategy()]);
+    command.args(["--reproduce", "--quiet", "--gather", configuration.strategy(), "--threads", &threads.to_string()]);
     command.arg("--search-path").arg(models).arg("-o").arg(folder.join("picture.png")).arg("--stats").arg(&stats);
     let output = command.output().context("cannot run lightcuts")?;
     if !output.status.success() {

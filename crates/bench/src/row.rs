@@ -7,9 +7,10 @@ use crate::table::{Table, verdict};
 /// Most CPU seconds of lightcuts relative to plain: choosing must not cost more than a tenth of what it chooses among.
 const MAX_LIGHTCUTS_RATIO: f64 = 1.10;
 
-const HEADER: [&str; 9] = [
+const HEADER: [&str; 10] = [
     "scene",
     "configuration",
+    "threads",
     "VPLs",
     "light ratio",
     "CPU s",
@@ -27,7 +28,13 @@ pub(crate) struct Row {
 
 impl Row {
     /// `plain_cpu_s` is what the plain configuration took, where this one is to be compared with it.
-    pub(crate) fn new(case: &Case, configuration: Configuration, measured: Measured, plain_cpu_s: Option<f64>) -> Self {
+    pub(crate) fn new(
+        case: &Case,
+        configuration: Configuration,
+        threads: usize,
+        measured: Measured,
+        plain_cpu_s: Option<f64>,
+    ) -> Self {
         let absent = || "-".to_owned();
         let (original, factor, target) = match case.reference {
             None => (absent(), absent(), absent()),
@@ -46,6 +53,7 @@ impl Row {
         let cells = [
             case.title.clone(),
             configuration.title().to_owned(),
+            threads.to_string(),
             measured.vpl_count.to_string(),
             format!("{:.4} %", measured.light_ratio_percent),
             format!("{:.2}", measured.total_cpu_s),
@@ -84,19 +92,29 @@ mod tests {
     #[test]
     fn targets_are_met_or_missed() {
         let row =
-            |seconds: f64| Row::new(&case(Scene::Simple), Configuration::Lightcuts, measured(seconds), Some(0.64));
+            |seconds: f64| Row::new(&case(Scene::Simple), Configuration::Lightcuts, 2, measured(seconds), Some(0.64));
         let met = row(0.7).cells;
-        let expected =
-            ["Simple", "lightcuts", "290", "68.3130 %", "0.70", "14.7", "21.0", "20 met", "1.09, at most 1.10 met"];
+        let expected = [
+            "Simple",
+            "lightcuts",
+            "2",
+            "290",
+            "68.3130 %",
+            "0.70",
+            "14.7",
+            "21.0",
+            "20 met",
+            "1.09, at most 1.10 met",
+        ];
         assert_eq!(met, expected);
         let missed = row(1.0).cells;
-        assert_eq!(missed[6..], ["14.7", "20 missed", "1.56, at most 1.10 missed"]);
+        assert_eq!(missed[7..], ["14.7", "20 missed", "1.56, at most 1.10 missed"]);
     }
 
     #[test]
     fn stand_ins_have_no_factor() {
-        let row = Row::new(&case(Scene::Venus), Configuration::Plain, measured(1.0), None);
+        let row = Row::new(&case(Scene::Venus), Configuration::Plain, 1, measured(1.0), None);
         assert_eq!(row.cells[0], "Venus (stand-in)");
-        assert_eq!(row.cells[5..], ["-", "-", "-", "-"]);
+        assert_eq!(row.cells[6..], ["-", "-", "-", "-"]);
     }
 }

@@ -27,6 +27,12 @@ pub(crate) struct Args {
     date: Option<String>,
 }
 
+/// One thread, as the original program has, and all of the machine's: what they wait for each other counts too.
+fn threads() -> Vec<usize> {
+    let all = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    if all == 1 { vec![1] } else { vec![1, all] }
+}
+
 /// Renders the scenes and prints the table.
 pub(crate) fn run(args: &Args) -> Result<()> {
     let models = args.models.clone().unwrap_or_else(place::shared_models);
@@ -39,12 +45,15 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         if let Some(absent) = case.absent_model {
             println!("{absent} is not here: {} takes its place, without a factor", case.file);
         }
-        let median = measure::interleaved(&cli, &case, &models, folder.path(), args.runs)?;
-        let plain_s = median[Configuration::Plain as usize].total_cpu_s;
-        rows.extend(Configuration::ALL.map(|configuration| {
-            let measured = median[configuration as usize];
-            Row::new(&case, configuration, measured, (configuration == Configuration::Lightcuts).then_some(plain_s))
-        }));
+        for threads in threads() {
+            let median = measure::interleaved(&cli, &case, threads, &models, folder.path(), args.runs)?;
+            let plain_s = median[Configuration::Plain as usize].total_cpu_s;
+            rows.extend(Configuration::ALL.map(|configuration| {
+                let measured = median[configuration as usize];
+                let compared = (configuration == Configuration::Lightcuts).then_some(plain_s);
+                Row::new(&case, configuration, threads, measured, compared)
+            }));
+        }
     }
     let table = row::markdown(&rows);
     println!("\n{table}");

@@ -14,7 +14,8 @@ use lightcuts_kernel::ray::Ray;
 use lightcuts_kernel::rng::random4;
 use lightcuts_world::bvh::LANES;
 
-/// Camera rays that look together: those of a square of so many rows, or one a little wider, eight neighbours after the other.
+/// Camera rays that look together, so many as shadow rays to one VPL go together: those of a block of pixels with so many rows,
+/// eight neighbours after the other.
 const TOGETHER: usize = 32;
 const ROWS: u32 = 4;
 const WIDTH: u32 = TOGETHER as u32 / ROWS;

@@ -189,6 +189,8 @@ impl<'a> Fan<'a> {
     }
 
     /// Lanes whose box, the near side of an axis or the far one, is met by rays whose reciprocals, seen from the end, are in a range.
+    /// The rounding of the end and of what is computed from it moves a side by less than 12 u of the largest coordinate; boxes are
+    /// padded by more (`PADDING` in `lightcuts_world`).
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn met(&self, [least, greatest]: [Wide3; 2], side: impl Fn(usize, usize) -> __m256) -> u32 {

@@ -85,7 +85,7 @@ impl Cosines {
     }
 }
 
-/// Shadow rays of the lanes in `chosen` that face their VPL, or that their VPL faces; twin of `vpl_incidence`.
+/// Shadow rays of the lanes in `chosen` where point and VPL face each other; twin of `vpl_incidence`.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn shadow(direction: Wide3, cosines: &Cosines, (block, lane): (u32, usize), chosen: u32, shared: Shared) -> Shadow {

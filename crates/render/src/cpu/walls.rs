@@ -87,8 +87,8 @@ fn first_face(number: usize) -> usize {
 
 /// What the VPLs of a block have in common.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Placing {
-    pub(crate) sides: Sides,
+struct Placing {
+    sides: Sides,
     /// The number of their direction, if it is the same for all, else [`NONE`].
     direction: u32,
 }
