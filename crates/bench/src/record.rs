@@ -36,10 +36,14 @@ pub(crate) fn entry(date: Option<&str>, runs: u32, table: &str) -> String {
     format!("{heading}{}; {median} per configuration.\n\n{table}", machine())
 }
 
+/// As many threads as the machine runs at once.
+pub(crate) fn hardware_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
 /// The processor and its threads.
-fn machine() -> String {
-    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    format!("{}, {threads} hardware threads", processor_name())
+pub(crate) fn machine() -> String {
+    format!("{}, {} hardware threads", processor_name(), hardware_threads())
 }
 
 /// The heading of an entry: the date, today's unless one is given, the git revision, and of what the numbers are.

@@ -6,6 +6,7 @@ use crate::place;
 use crate::record;
 use crate::row::{self, Row};
 use anyhow::{Context as _, Result};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -27,12 +28,6 @@ pub(crate) struct Args {
     date: Option<String>,
 }
 
-/// One thread, as the original program has, and all of the machine's: what they wait for each other counts too.
-fn threads() -> Vec<usize> {
-    let all = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    if all == 1 { vec![1] } else { vec![1, all] }
-}
-
 /// Renders the scenes and prints the table.
 pub(crate) fn run(args: &Args) -> Result<()> {
     let models = args.models.clone().unwrap_or_else(place::shared_models);
@@ -45,7 +40,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         if let Some(absent) = case.absent_model {
             println!("{absent} is not here: {} takes its place, without a factor", case.file);
         }
-        for threads in threads() {
+        // One, as the original program has, and all of the machine's: what they wait for each other counts too.
+        for threads in BTreeSet::from([1, record::hardware_threads()]) {
             let median = measure::interleaved(&cli, &case, threads, &models, folder.path(), args.runs)?;
             let plain_s = median[Configuration::Plain as usize].total_cpu_s;
             rows.extend(Configuration::ALL.map(|configuration| {

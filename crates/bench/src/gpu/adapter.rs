@@ -3,9 +3,9 @@
 use super::log::Log;
 use super::setup::{CPU_THREADS, Setup};
 use crate::format::mebibytes;
+use crate::record::machine;
 use crate::table::Table;
 use anyhow::Result;
-use lightcuts::device::processor_name;
 use lightcuts::gpu::{AdapterSummary, GpuOptions};
 
 #[expect(clippy::unnecessary_wraps, reason = "all sections have one type")]
@@ -37,6 +37,5 @@ fn of_adapter(adapter: &AdapterSummary) -> [(&'static str, String); 10] {
 }
 
 fn processor() -> String {
-    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    format!("{}, {threads} hardware threads, {CPU_THREADS} of which render", processor_name())
+    format!("{}, {CPU_THREADS} of which render", machine())
 }

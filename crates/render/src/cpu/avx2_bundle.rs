@@ -6,7 +6,7 @@
 
 #![allow(unsafe_code)]
 
-use super::avx2_packet::{Packet, meet, sphere_from};
+use super::avx2_packet::{Packet, meet, meet_any, sphere_from};
 use super::avx2_trace::{
     Wide3, WideRay, any_hit, block, closest_hit, lanes, load, nearer_hit, other_hit, splat3, spread, store,
 };
@@ -15,20 +15,20 @@ use super::tracer::Tracer;
 use super::walls::FEW;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square, min_determinant};
-use lightcuts_kernel::ray::{Hit, NONE, Ray, SLAB_SLACK};
+use lightcuts_kernel::ray::{Hit, NONE, Ray};
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE};
 use std::arch::x86_64::{
-    __m256, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_blendv_ps, _mm256_castps_si256,
-    _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpgt_epi32, _mm256_cvtss_f32, _mm256_max_ps, _mm256_min_ps,
-    _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_permute_ps, _mm256_permute2f128_ps, _mm256_set1_epi32,
-    _mm256_set1_ps, _mm256_setzero_ps, _mm256_sub_ps,
+    __m256, __m256i, _CMP_EQ_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi256_ps,
+    _mm256_cmp_ps, _mm256_cmpgt_epi32, _mm256_cvtss_f32, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
+    _mm256_or_ps, _mm256_permute_ps, _mm256_permute2f128_ps, _mm256_set1_epi32, _mm256_set1_ps, _mm256_setzero_ps,
+    _mm256_sub_ps,
 };
 
 /// So few rays are quicker alone.
-const ALONE: u32 = 2;
+pub(super) const ALONE: u32 = 2;
 
-/// A bit for each ray.
-const ALL: u32 = 0xff;
+/// A bit for each ray of a packet.
+pub(super) const ALL: u32 = 0xff;
 
 /// Rays whose directions have the same signs, with the ranges of their numbers in all lanes.
 pub(super) struct Bundle<'a> {
@@ -83,16 +83,11 @@ impl<'a> Bundle<'a> {
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn enter(&self, node: &BvhNode, limit: __m256) -> (u32, __m256) {
-        let (mut entry, mut exit) = (self.t_min, limit);
-        for axis in 0..3 {
-            let near = _mm256_sub_ps(load(&node.bounds[self.backwards[axis] & 1][axis]), self.origin[0][axis]);
-            let far = _mm256_sub_ps(load(&node.bounds[(self.backwards[axis] & 1) ^ 1][axis]), self.origin[1][axis]);
-            let [least, greatest] = [self.slope[0][axis], self.slope[1][axis]];
-            entry = _mm256_max_ps(entry, _mm256_min_ps(_mm256_mul_ps(near, least), _mm256_mul_ps(near, greatest)));
-            exit = _mm256_min_ps(exit, _mm256_max_ps(_mm256_mul_ps(far, least), _mm256_mul_ps(far, greatest)));
-        }
-        let exit = _mm256_mul_ps(exit, _mm256_set1_ps(SLAB_SLACK));
-        (_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32, entry)
+        let side = |far: usize, axis: usize| {
+            _mm256_sub_ps(load(&node.bounds[(self.backwards[axis] & 1) ^ far][axis]), self.origin[far][axis])
+        };
+        let (near, far) = ([side(0, 0), side(0, 1), side(0, 2)], [side(1, 0), side(1, 1), side(1, 2)]);
+        meet_any((near, far), self.slope, self.t_min, limit)
     }
 
     /// Rays that cross a child's box before `limit`.

@@ -11,30 +11,25 @@
 
 #![allow(unsafe_code)]
 
-use super::avx2_packet::{Packet, meet, safe_reciprocal};
+use super::avx2_bundle::{ALL, ALONE};
+use super::avx2_packet::{Packet, meet, meet_any, safe_reciprocal};
 use super::avx2_trace::{Wide3, any_hit, block, cross, dot, lanes, load, load3, splat3, spread, sub};
 use super::stack::Stack;
 use super::tracer::Tracer;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::min_determinant;
-use lightcuts_kernel::ray::{NONE, Ray, SLAB_SLACK};
+use lightcuts_kernel::ray::{NONE, Ray};
 use lightcuts_world::bvh::{Geometry, LANES, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
-    __m256, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_blendv_ps,
-    _mm256_cmp_ps, _mm256_cvtss_f32, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps,
-    _mm256_permute_ps, _mm256_permute2f128_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_shuffle_ps, _mm256_sub_ps,
-    _mm256_unpackhi_ps, _mm256_unpacklo_ps, _mm256_xor_ps,
+    __m256, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_blendv_ps, _mm256_cmp_ps,
+    _mm256_cvtss_f32, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_permute_ps,
+    _mm256_permute2f128_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_shuffle_ps, _mm256_sub_ps, _mm256_unpackhi_ps,
+    _mm256_unpacklo_ps, _mm256_xor_ps,
 };
 
 /// Packets that make up a fan at most, eight bits each in masks of its rays.
 pub(super) const PACKETS: usize = u32::BITS as usize / LANES;
-
-/// A bit for each ray of a packet.
-const ALL: u32 = 0xff;
-
-/// So few rays are quicker alone.
-const ALONE: u32 = 2;
 
 /// What a numerator may be off by in single precision, as a share of how large the products are that it is the difference of: with
 /// u half an epsilon, less than 100 u in `intersect_triangle` and here together, the rounding of the rays' ends included.
@@ -193,18 +188,10 @@ impl<'a> Fan<'a> {
     /// padded by more (`PADDING` in `lightcuts_world`).
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    fn met(&self, [least, greatest]: [Wide3; 2], side: impl Fn(usize, usize) -> __m256) -> u32 {
-        let (mut entry, mut exit) = (_mm256_setzero_ps(), _mm256_set1_ps(1.0));
-        for axis in 0..3 {
-            let near = _mm256_sub_ps(side(0, axis), self.end[axis]);
-            let far = _mm256_sub_ps(side(1, axis), self.end[axis]);
-            let (a, b) = (_mm256_mul_ps(near, least[axis]), _mm256_mul_ps(near, greatest[axis]));
-            let (c, d) = (_mm256_mul_ps(far, least[axis]), _mm256_mul_ps(far, greatest[axis]));
-            entry = _mm256_max_ps(entry, _mm256_min_ps(a, b));
-            exit = _mm256_min_ps(exit, _mm256_max_ps(c, d));
-        }
-        let exit = _mm256_mul_ps(exit, _mm256_set1_ps(SLAB_SLACK));
-        _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32
+    fn met(&self, slopes: [Wide3; 2], side: impl Fn(usize, usize) -> __m256) -> u32 {
+        let side = |far: usize, axis: usize| _mm256_sub_ps(side(far, axis), self.end[axis]);
+        let (near, far) = ([side(0, 0), side(0, 1), side(0, 2)], [side(1, 0), side(1, 1), side(1, 2)]);
+        meet_any((near, far), slopes, _mm256_setzero_ps(), _mm256_set1_ps(1.0)).0
     }
 
     /// Triangles of a block that rays of some packets, a bit each, may hit. `extent` is the sum of the extents of a box around them.

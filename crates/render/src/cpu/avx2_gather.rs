@@ -188,6 +188,9 @@ struct Points<'a> {
     /// Of the current block the points that have each VPL, and those whose VPLs are certain, a bit each.
     asked: [u32; LANES],
     certain: u32,
+    /// Whether the points and the current block look the same way, and the planes that have both on one side.
+    is_turned_away: bool,
+    shared: Shared,
     /// By lane of the VPLs, as one point sums them.
     sums: [Wide3; LANES],
     chosen: __m256i,
@@ -212,6 +215,8 @@ impl<'a> Points<'a> {
             next: [0; LANES],
             asked: [0; LANES],
             certain: 0,
+            is_turned_away: false,
+            shared: Shared::default(),
             sums: [[_mm256_setzero_ps(); 3]; LANES],
             chosen: _mm256_setzero_si256(),
             shadow_rays: _mm256_setzero_si256(),
@@ -224,8 +229,10 @@ impl<'a> Points<'a> {
         ahead.map(|ahead| ahead.block).min()
     }
 
-    /// Goes on to a block, if that is the next one.
-    fn ask(&mut self, block: u32) {
+    /// Goes on to a block.
+    fn ask(&mut self, block: u32, source: &Source, walls: &Walls) {
+        self.is_turned_away = walls.is_turned_away(block, self.outlook);
+        self.shared = source.shared(walls.sides(block));
         let mut lanes = [0_u8; LANES];
         self.certain = 0;
         for (k, candidates) in self.candidates.iter().enumerate() {
@@ -241,17 +248,10 @@ impl<'a> Points<'a> {
     /// only those where its relevance reaches the threshold. None, where neither lights the other.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    fn shadow(
-        &mut self,
-        block: &VplBlock,
-        (number, lane): (u32, usize),
-        threshold: Option<f32>,
-        is_turned_away: bool,
-        shared: Shared,
-    ) -> Option<Shadow> {
+    fn shadow(&mut self, block: &VplBlock, (number, lane): (u32, usize), threshold: Option<f32>) -> Option<Shadow> {
         let asked = self.asked[lane];
         let tested = threshold.filter(|_| asked & !self.certain != 0);
-        if asked == 0 || is_turned_away && tested.is_none() {
+        if asked == 0 || self.is_turned_away && tested.is_none() {
             count(&mut self.chosen, asked);
             return None;
         }
@@ -261,7 +261,7 @@ impl<'a> Points<'a> {
             let intensity = _mm256_set1_ps(block.intensity[lane % LANES]);
             asked & (self.certain | relevant(intensity, cosines.phi, cosines.dist_sq, threshold))
         });
-        let shadow = shadow(to_light, &cosines, (number, lane), chosen, shared);
+        let shadow = shadow(to_light, &cosines, (number, lane), chosen, self.shared);
         count(&mut self.chosen, chosen);
         count(&mut self.shadow_rays, shadow.open);
         Some(shadow)
@@ -324,16 +324,13 @@ pub(super) fn evaluate_together(
     };
     let (mut batch, mut size) = (Batch::new(), 0);
     while let Some(number) = points.iter().filter_map(Points::next_block).min() {
-        for points in &mut points {
-            points.ask(number);
+        for (points, source) in points.iter_mut().zip(&sources) {
+            points.ask(number, source, walls);
         }
         let block = &vpls[number as usize];
         for lane in 0..LANES {
             for index in 0..points.len() {
-                let is_turned_away = walls.is_turned_away(number, points[index].outlook);
-                let shared = sources[index].shared(walls.sides(number));
-                let shadow = points[index].shadow(block, (number, lane), threshold, is_turned_away, shared);
-                let Some(shadow) = shadow else { continue };
+                let Some(shadow) = points[index].shadow(block, (number, lane), threshold) else { continue };
                 size = batch.put_if(size, Shadow { source: index as u32, ..shadow }, shadow.open != 0);
                 if size == MOST {
                     finish(&mut points, &mut batch, size);

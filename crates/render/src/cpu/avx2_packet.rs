@@ -122,6 +122,27 @@ pub(super) fn meet(
     _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32
 }
 
+/// Boxes that any of some rays may cross, and the earliest that one may enter them, by interval arithmetic: from where the rays begin
+/// to the boxes' near and far sides, with the least and the greatest reciprocals of their directions.
+#[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[inline]
+pub(super) fn meet_any(
+    (near, far): (Wide3, Wide3),
+    [least, greatest]: [Wide3; 2],
+    t_min: __m256,
+    limit: __m256,
+) -> (u32, __m256) {
+    let (mut entry, mut exit) = (t_min, limit);
+    for axis in 0..3 {
+        let by = |side: __m256| (_mm256_mul_ps(side, least[axis]), _mm256_mul_ps(side, greatest[axis]));
+        let ((a, b), (c, d)) = (by(near[axis]), by(far[axis]));
+        entry = _mm256_max_ps(entry, _mm256_min_ps(a, b));
+        exit = _mm256_min_ps(exit, _mm256_max_ps(c, d));
+    }
+    let exit = _mm256_mul_ps(exit, _mm256_set1_ps(SLAB_SLACK));
+    (_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32, entry)
+}
+
 impl Packet {
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     pub(super) fn new(rays: &[Ray; LANES]) -> Self {

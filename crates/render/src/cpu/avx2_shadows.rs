@@ -5,6 +5,7 @@
 
 #![allow(unsafe_code)]
 
+use super::avx2_bundle::ALL;
 use super::avx2_fan::{PACKETS, miss_mesh};
 use super::avx2_packet::{Packet, height_of, sphere_from};
 use super::avx2_trace::{Wide3, lanes};
@@ -19,9 +20,6 @@ use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_LE_OQ, _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps, _mm256_movemask_ps, _mm256_set1_ps,
     _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps,
 };
-
-/// A mask of all lanes.
-const ALL: i32 = 0xff;
 
 /// Packets that are collected, a bit each in masks: what is kept of them stays in the nearest cache.
 pub(super) const MOST: usize = u32::BITS as usize;
@@ -70,7 +68,7 @@ impl Source {
         for sphere in geometry.spheres.iter().take(FEW) {
             self.spheres.push(sphere_from(sphere, origin));
         }
-        let all = |mask: __m256| u32::from(_mm256_movemask_ps(mask) == ALL);
+        let all = |mask: __m256| u32::from(_mm256_movemask_ps(mask) as u32 == ALL);
         let mut sides = Sides::default();
         for (index, square) in geometry.squares.iter().take(FEW).enumerate() {
             let height = height_of(square, origin);
@@ -177,7 +175,7 @@ pub(super) fn trace(tracer: &Tracer<'_>, sources: &[Source], shadows: &mut [Shad
         }
         let open = miss_mesh(tracer, fan.as_slice());
         for (number, &place) in places[..fan.size].iter().enumerate() {
-            shadows[place].open = open >> (LANES * number) & ALL as u32;
+            shadows[place].open = open >> (LANES * number) & ALL;
         }
     }
 }

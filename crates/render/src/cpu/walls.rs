@@ -40,7 +40,7 @@ pub(crate) struct Sides {
 }
 
 /// Planes that have both ends of some rays on the same side, a bit each.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Shared(u64);
 
 impl Sides {

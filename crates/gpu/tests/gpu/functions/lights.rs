@@ -66,7 +66,8 @@ fn at(c: &Case<'_>) -> Incidence {
 /// The same of a VPL.
 fn vpl_at(c: &Case<'_>) -> VplIncidence {
     c.take(|| {
-        let (to_light, dist_sq) = (c.raw_point(), c.raw_point().length_squared());
+        let to_light = c.raw_point();
+        let dist_sq = to_light.length_squared();
         VplIncidence { to_light, cosines: c.raw_fraction() * dist_sq, dist_sq }
     })
 }
