@@ -30,6 +30,7 @@ pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
         return dry_run(plan, args.output.talk.quiet);
     }
     memory::require_for(plan.job.settings.image)?;
+    memory::keep_freed();
     let progress = Progress::new(args.output.talk.progress, args.output.talk.quiet, logs);
     match &plan.scene {
         AnyScene::Thesis(scene) => {

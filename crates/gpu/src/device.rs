@@ -173,8 +173,8 @@ impl Device for GpuDevice<'_> {
         Ok(results.into_iter().map(Some).collect())
     }
 
-    fn original_shifts(&self, view: &View<'_>) -> Result<Option<Vec<[f32; 2]>>, DeviceFault> {
-        self.with(|engine| engine.original_shifts(view)).map(Some)
+    fn original_shifts(&self, view: &View<'_>) -> Result<Vec<[f32; 2]>, DeviceFault> {
+        self.with(|engine| engine.original_shifts(view))
     }
 
     fn shoot_photons(

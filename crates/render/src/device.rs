@@ -42,8 +42,8 @@ pub trait Device: Sync {
     ) -> Result<Vec<Option<TileResult>>, DeviceFault>;
 
     /// Shifts of all pixels' samples in the original's first pass, bottom row first, in pixels: each row's depend on the
-    /// number of hits in the rows below. `None` from a device that traces row by row.
-    fn original_shifts(&self, view: &View<'_>) -> Result<Option<Vec<[f32; 2]>>, DeviceFault>;
+    /// number of hits in the rows below.
+    fn original_shifts(&self, view: &View<'_>) -> Result<Vec<[f32; 2]>, DeviceFault>;
 
     /// Photons for caustics, with the number of rays that it took. Calls [`Monitor::advance`] once per row of each of the
     /// [`photon_targets`]. A monitor that cancels gets those shot so far.

@@ -2,6 +2,7 @@
 
 use crate::settings::Filter;
 use glam::{Vec3, Vec4, Vec4Swizzles};
+use lightcuts_kernel::filter::{PixelFilter, filter_weight};
 
 /// A rectangle of pixels; j counts from the bottom, as in the thesis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,6 +37,9 @@ impl Tile {
 /// Weighted sums (rgb, weight) of a rectangle of pixels.
 #[derive(Debug, Clone)]
 pub struct Film {
+    filter: PixelFilter,
+    /// Pixels around its tile that samples reach, in each direction.
+    border: i64,
     /// First column and row; negative in a tile's border.
     left: i64,
     bottom: i64,
@@ -45,21 +49,14 @@ pub struct Film {
 }
 
 impl Film {
-    /// An empty film for a whole picture.
+    /// An empty film for a whole picture, made up of tiles' films.
     pub(crate) fn new(width: u32, height: u32) -> Self {
-        Self::window(0, 0, width as usize, height as usize)
+        Self::window(&Tile { i: 0, j: 0, width, height }, &Filter::default(), 0)
     }
 
     /// An empty film for a tile and the pixels around it that its samples reach.
     pub fn around(tile: &Tile, filter: &Filter) -> Self {
-        let border = filter.border() as usize;
-        let offset = border as i64;
-        Self::window(
-            i64::from(tile.i) - offset,
-            i64::from(tile.j) - offset,
-            tile.width as usize + 2 * border,
-            tile.height as usize + 2 * border,
-        )
+        Self::window(tile, filter, filter.border())
     }
 
     /// The film [`around`](Self::around) a tile from its sums: row by row, the bottom row of the window first, each rgb and
@@ -75,16 +72,19 @@ impl Film {
         &self.sums
     }
 
-    fn window(left: i64, bottom: i64, width: usize, height: usize) -> Self {
-        Self { left, bottom, width, height, sums: vec![Vec4::ZERO; width * height] }
+    fn window(tile: &Tile, filter: &Filter, border: u32) -> Self {
+        let (width, height) = ((tile.width + 2 * border) as usize, (tile.height + 2 * border) as usize);
+        let border = i64::from(border);
+        let (left, bottom) = (i64::from(tile.i) - border, i64::from(tile.j) - border);
+        let sums = vec![Vec4::ZERO; width * height];
+        Self { filter: filter.pixel_filter(), border, left, bottom, width, height, sums }
     }
 
     /// Adds a sample that lies `shift` pixels from the centre of pixel (i, j).
-    pub(crate) fn add(&mut self, filter: &Filter, i: u32, j: u32, shift: [f32; 2], color: Vec3) {
-        let reach = i64::from(filter.border());
-        for y in -reach..=reach {
-            for x in -reach..=reach {
-                let weight = filter.weight(shift[0] - x as f32, shift[1] - y as f32);
+    pub(crate) fn add(&mut self, i: u32, j: u32, shift: [f32; 2], color: Vec3) {
+        for y in -self.border..=self.border {
+            for x in -self.border..=self.border {
+                let weight = filter_weight(&self.filter, shift[0] - x as f32, shift[1] - y as f32);
                 if weight != 0.0 {
                     let column = (i64::from(i) + x - self.left) as usize;
                     let row = (i64::from(j) + y - self.bottom) as usize;
@@ -145,12 +145,12 @@ mod tests {
             let mut merged = Film::new(9, 7);
             for tile in Tile::cover(9, 7, 4) {
                 let mut film = Film::around(&tile, &filter);
-                tile.pixels().for_each(|(i, j)| film.add(&filter, i, j, sample(i, j).1, sample(i, j).0));
+                tile.pixels().for_each(|(i, j)| film.add(i, j, sample(i, j).1, sample(i, j).0));
                 merged.merge(&film);
             }
             let whole_tile = Tile { i: 0, j: 0, width: 9, height: 7 };
             let mut whole = Film::around(&whole_tile, &filter);
-            whole_tile.pixels().for_each(|(i, j)| whole.add(&filter, i, j, sample(i, j).1, sample(i, j).0));
+            whole_tile.pixels().for_each(|(i, j)| whole.add(i, j, sample(i, j).1, sample(i, j).0));
             let mut expected = Film::new(9, 7);
             expected.merge(&whole);
             for j in 0..7 {
@@ -166,7 +166,7 @@ mod tests {
         let filter = Filter { kind: FilterKind::Mitchell, ..Filter::default() };
         let tile = Tile { i: 0, j: 0, width: 5, height: 5 };
         let mut film = Film::around(&tile, &filter);
-        tile.pixels().for_each(|(i, j)| film.add(&filter, i, j, [0.1, -0.3], Vec3::splat(0.25)));
+        tile.pixels().for_each(|(i, j)| film.add(i, j, [0.1, -0.3], Vec3::splat(0.25)));
         let mut picture = Film::new(5, 5);
         picture.merge(&film);
         assert!((picture.color(0, 4) - 0.25).abs().max_element() < 1e-5);

@@ -1,9 +1,7 @@
 //! Pixel filters as settings name them.
 
 use crate::settings::{Filter, FilterKind};
-use lightcuts_kernel::filter::{
-    FILTER_BOX, FILTER_GAUSSIAN, FILTER_MITCHELL, FILTER_TRIANGLE, PixelFilter, filter_weight,
-};
+use lightcuts_kernel::filter::{FILTER_BOX, FILTER_GAUSSIAN, FILTER_MITCHELL, FILTER_TRIANGLE, PixelFilter};
 
 impl Filter {
     /// The filter as devices take it.
@@ -27,17 +25,12 @@ impl Filter {
     pub fn border(&self) -> u32 {
         (self.resolved_radius() + 0.5).ceil() as u32 - 1
     }
-
-    /// Weight of a sample `x` pixels to the right of and `y` pixels above a pixel's centre.
-    pub(crate) fn weight(&self, x: f32, y: f32) -> f32 {
-        filter_weight(&self.pixel_filter(), x, y)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightcuts_kernel::filter::mitchell;
+    use lightcuts_kernel::filter::{filter_weight, mitchell};
 
     fn filter(kind: FilterKind) -> Filter {
         Filter { kind, ..Filter::default() }
@@ -45,17 +38,17 @@ mod tests {
 
     #[test]
     fn a_sample_on_a_border_belongs_to_one_pixel() {
-        let f = filter(FilterKind::Box);
-        assert_eq!((f.weight(-0.5, 0.0), f.weight(0.5, 0.0)), (1.0, 0.0));
+        let f = filter(FilterKind::Box).pixel_filter();
+        assert_eq!((filter_weight(&f, -0.5, 0.0), filter_weight(&f, 0.5, 0.0)), (1.0, 0.0));
     }
 
     #[test]
     fn filters_fall_off_and_end() {
         for kind in [FilterKind::Triangle, FilterKind::Gaussian, FilterKind::Mitchell] {
-            let f = filter(kind);
-            let r = f.resolved_radius();
-            assert!(f.weight(0.0, 0.0) > f.weight(0.4, 0.0) && f.weight(0.4, 0.0) > 0.0, "{kind:?}");
-            assert!(f.weight(r * 0.999, 0.0).abs() < 2e-3 && f.weight(r, 0.0) == 0.0, "{kind:?}");
+            let f = filter(kind).pixel_filter();
+            let weight = |x| filter_weight(&f, x, 0.0);
+            assert!(weight(0.0) > weight(0.4) && weight(0.4) > 0.0, "{kind:?}");
+            assert!(weight(f.radius * 0.999).abs() < 2e-3 && weight(f.radius) == 0.0, "{kind:?}");
         }
     }
 

@@ -16,6 +16,7 @@ mod monitor;
 mod occlusion;
 mod original;
 mod original_pass;
+mod original_rows;
 mod packed_tree;
 mod pass;
 mod photon_map;

@@ -31,6 +31,13 @@ impl OriginalDraws {
         original_shift(self.generator.draw())
     }
 
+    /// Passes over draws: each hit takes one.
+    pub(crate) fn skip(&mut self, draws: usize) {
+        for _ in 0..draws {
+            self.generator.draw();
+        }
+    }
+
     /// One draw: whether a hit may become a VPL.
     pub(crate) fn accepts(&mut self, probability: f32) -> bool {
         self.generator.draw() <= acceptance_limit(probability)
@@ -41,9 +48,7 @@ impl OriginalDraws {
         let mut layer = vpls;
         while layer > 1 {
             layer = layer.div_ceil(2);
-            for _ in 0..layer {
-                self.generator.draw();
-            }
+            self.skip(layer);
         }
     }
 }

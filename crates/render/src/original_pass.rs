@@ -1,7 +1,10 @@
 //! The first pass with the original's random numbers: one sequence, row by row.
+//!
+//! Each row's shifts depend on the number of hits before it. So they are found beforehand, by following rays without any light; the
+//! pass itself is then free to render many rows at once.
 
 use crate::Vpl;
-use crate::device::{Lighting, Placement, Shifts, Tile, Wants};
+use crate::device::{Lighting, Placement, Shifts, Wants};
 use crate::job::Job;
 use crate::monitor::Stage;
 use crate::original::OriginalDraws;
@@ -9,60 +12,22 @@ use crate::ray_tree::TreeHit;
 use crate::settings::Strategy;
 use crate::stations::Station;
 
-/// Pixels of a row that are traced in one go: many enough to be worth handing over, few enough to keep all cores busy.
-const PIECE: u32 = 64;
-
 impl Job<'_> {
-    /// The first pass with the original's draws.
-    pub(crate) fn first_pass_original(&mut self, draws: OriginalDraws) -> Vec<Vpl> {
+    /// The first pass with the original's draws, which decide about hits.
+    pub(crate) fn first_pass_original(&mut self, mut draws: OriginalDraws) -> Vec<Vpl> {
         let view = self.view;
         let occlusion = self.occlusion();
         let lighting = Lighting::Scene { occlusion: occlusion.as_ref() };
-        match self.crew.run(Station::Place, self.monitor, |device, _| device.original_shifts(&view)) {
-            Some(shifts) => self.first_pass_at(lighting, &shifts, draws),
-            None => self.first_pass_by_rows(lighting, draws),
-        }
-    }
-
-    /// The original's first pass with shifts that a device has found beforehand; the draws decide about hits only.
-    fn first_pass_at(&mut self, lighting: Lighting<'_>, shifts: &[[f32; 2]], mut draws: OriginalDraws) -> Vec<Vpl> {
-        let width = self.view.camera.width;
+        let shifts = self.crew.run(Station::Place, self.monitor, |device, _| device.original_shifts(&view));
+        let width = view.camera.width;
         let placement = self.original_placement();
         let mut vpls = Vec::new();
-        let pass = self.pass(lighting, Shifts::Given(shifts), Wants::SurfacesAndHits);
+        let pass = self.pass(lighting, Shifts::Given(&shifts), Wants::SurfacesAndHits);
         self.run_pass(Stage::FirstPass, &pass, |canvas, result| {
             canvas.first.merge(&result.film);
             draws.row(width);
             placement(&mut draws, &result.hits, &mut vpls);
         });
-        self.draws = Some(draws);
-        vpls
-    }
-
-    /// The original's first pass row by row, because each row's shifts depend on the number of hits before it.
-    fn first_pass_by_rows(&mut self, lighting: Lighting<'_>, mut draws: OriginalDraws) -> Vec<Vpl> {
-        let (width, height) = (self.view.camera.width, self.view.camera.height);
-        let placement = self.original_placement();
-        let mut shifts = vec![[0.0; 2]; (width * height) as usize];
-        let mut vpls = Vec::new();
-        self.monitor.begin(Stage::FirstPass, u64::from(height * width.div_ceil(PIECE)));
-        for j in 0..height {
-            let start = (j * width) as usize;
-            shifts[start..start + width as usize].copy_from_slice(&draws.row(width));
-            let tiles: Vec<Tile> = (0..width)
-                .step_by(PIECE as usize)
-                .map(|i| Tile { i, j, width: PIECE.min(width - i), height: 1 })
-                .collect();
-            let pass = self.pass(lighting, Shifts::Given(&shifts), Wants::SurfacesAndHits);
-            let complete = self.merge_tiles(Station::Place, &pass, &tiles, |canvas, result| {
-                canvas.first.merge(&result.film);
-                placement(&mut draws, &result.hits, &mut vpls);
-            });
-            if !complete {
-                break;
-            }
-        }
-        self.monitor.end();
         self.draws = Some(draws);
         vpls
     }

@@ -6,7 +6,7 @@ use crate::film::{Film, Tile};
 use crate::original::effective_probability;
 use crate::ray_tree::{RayTree, TreeHit};
 use crate::settings::VplPlacement;
-use crate::shade::{First, Found, Shader};
+use crate::shade::{Found, Shader, TOGETHER};
 use crate::stats::{Rays, TreeVisits};
 use lightcuts_kernel::camera::{THESIS_SIZE, camera_ray};
 use lightcuts_kernel::light::Vpl;
@@ -14,9 +14,7 @@ use lightcuts_kernel::ray::Ray;
 use lightcuts_kernel::rng::random4;
 use lightcuts_world::bvh::LANES;
 
-/// Camera rays that look together, so many as shadow rays to one VPL go together: those of a block of pixels with so many rows,
-/// eight neighbours after the other.
-const TOGETHER: usize = 32;
+/// Rows and columns of the block of pixels whose camera rays look together, eight neighbours after the other.
 const ROWS: u32 = 4;
 const WIDTH: u32 = TOGETHER as u32 / ROWS;
 
@@ -58,26 +56,30 @@ impl Placement {
 impl Pass<'_> {
     /// Renders one tile.
     pub(crate) fn render_tile(&self, tracer: Tracer<'_>, walls: &Walls, tile: &Tile) -> TileResult {
+        let area = (tile.width * tile.height) as usize;
         let mut worker = Worker {
             pass: self,
-            shader: Shader::new(self.view.world, tracer, self.lighting, walls),
+            shader: Shader::new(self.view.world, tracer, Some(self.lighting), walls),
             tree: RayTree::new(self.view.max_depth),
             shifts: Vec::new(),
             samples: Vec::new(),
+            rays: Vec::new(),
             tree_hits: Vec::new(),
             result: TileResult {
                 tile: *tile,
                 film: Film::around(tile, self.view.filter),
-                seen: Vec::with_capacity((tile.width * tile.height) as usize),
+                seen: Vec::with_capacity(area),
                 vpls: Vec::new(),
-                hits: Vec::new(),
+                hits: Vec::with_capacity(if let Wants::SurfacesAndHits = self.wants { area + area / 8 } else { 0 }),
                 selections: Vec::new(),
                 rays: Rays::default(),
                 visits: TreeVisits::default(),
             },
         };
         let pixels: Vec<(u32, u32)> = tile.pixels().collect();
-        pixels.chunks((tile.width * ROWS) as usize).for_each(|pixels| worker.render_rows(pixels));
+        // Few at a time, for what is kept of them; a tile of one row is cut.
+        let together = if tile.height == 1 { 2 * TOGETHER } else { (tile.width * ROWS) as usize };
+        pixels.chunks(together).for_each(|pixels| worker.render_rows(pixels));
         TileResult { rays: worker.shader.rays, visits: worker.shader.visits, ..worker.result }
     }
 }
@@ -89,26 +91,26 @@ struct Worker<'a> {
     tree: RayTree,
     shifts: Vec<[f32; 2]>,
     samples: Vec<Sample>,
+    rays: Vec<Ray>,
     tree_hits: Vec<TreeHit>,
     result: TileResult,
 }
 
-/// A camera ray that is to be traced.
+/// Where a camera ray that is to be traced comes from.
 struct Sample {
     /// Place of its pixel in its rows.
     place: usize,
     /// Number of the pixel, and of the ray in it.
     number: (u32, u32),
     shift: [f32; 2],
-    ray: Ray,
 }
 
 impl Worker<'_> {
     /// Renders a few rows of pixels: camera rays look together with their neighbours, and each goes on alone, in the order of the
     /// pixels.
     fn render_rows(&mut self, pixels: &[(u32, u32)]) {
-        let view = &self.pass.view;
         self.samples.clear();
+        self.rays.clear();
         for (place, &(i, j)) in pixels.iter().enumerate() {
             self.add_samples(place, i, j);
         }
@@ -119,25 +121,14 @@ impl Worker<'_> {
             let (i, j) = pixels[samples[k].place];
             order(i, j - bottom)
         });
-        let mut firsts = vec![First::default(); samples.len()];
-        let (mut rays, mut found) = (Vec::with_capacity(TOGETHER), [First::default(); TOGETHER]);
-        for together in looking.chunks(TOGETHER) {
-            rays.clear();
-            rays.extend(together.iter().map(|&k| samples[k].ray));
-            self.shader.look(&rays, &mut found[..together.len()]);
-            for (&k, found) in together.iter().zip(found) {
-                firsts[k] = found;
-            }
-        }
+        self.shader.look(&self.rays, &looking);
         let seen = self.result.seen.len();
         self.result.seen.resize(seen + pixels.len(), Seen::default());
-        for (sample, first) in samples.iter().zip(firsts) {
+        for (k, sample) in samples.iter().enumerate() {
             let (i, j) = pixels[sample.place];
-            self.shader.place = sample.number;
-            self.shader.first = Some(first);
-            self.shader.selected.clear();
-            let color = self.tree.trace(&mut self.shader, sample.ray);
-            self.result.film.add(view.filter, i, j, sample.shift, color);
+            self.shader.begin(k, sample.number);
+            let color = self.tree.trace(&mut self.shader, self.rays[k]);
+            self.result.film.add(i, j, sample.shift, color);
             self.report(seen + sample.place);
         }
         self.samples = samples;
@@ -158,10 +149,10 @@ impl Worker<'_> {
             }
         }
         let first = self.pass.first_sample;
-        self.samples.extend((first..).zip(&self.shifts).map(|(number, &shift)| {
-            let ray = camera_ray(&view.camera, i, j, shift, view.rules);
-            Sample { place, number: (pixel, number), shift, ray }
-        }));
+        for (number, &shift) in (first..).zip(&self.shifts) {
+            self.rays.push(camera_ray(&view.camera, i, j, shift, view.rules));
+            self.samples.push(Sample { place, number: (pixel, number), shift });
+        }
     }
 
     /// Takes from the ray tree what the pass wants, for the pixel that is seen at a place.

@@ -36,7 +36,7 @@ pub struct TreeHit {
 #[derive(Debug)]
 pub(crate) struct RayTree {
     max_depth: u32,
-    slots: Vec<Option<Slot>>,
+    slots: Vec<Slot>,
     /// Slots in use, parents before children.
     active: Vec<u32>,
     /// Place of each slot when subtrees come before their root, mirrored before refracted.
@@ -46,49 +46,50 @@ pub(crate) struct RayTree {
 impl RayTree {
     pub(crate) fn new(max_depth: u32) -> Self {
         let size = (1_usize << max_depth) - 1;
-        Self { max_depth, slots: vec![None; size], active: Vec::new(), rank: post_order(size) }
+        let ray = Ray { origin: Vec3::ZERO, direction: Vec3::ZERO, t_min: 0.0, t_max: 0.0, inside: false };
+        let unused = Slot { ray, color: Vec3::ZERO, found: None, reflection: 0.0, refraction: 0.0 };
+        Self { max_depth, slots: vec![unused; size], active: Vec::new(), rank: post_order(size) }
     }
 
     /// Traces a camera ray with everything that follows from it and returns its colour.
     pub(crate) fn trace(&mut self, shader: &mut Shader<'_>, camera_ray: Ray) -> Vec3 {
         self.active.clear();
-        self.active.push(0);
-        self.slots[0] = Some(self.visit(shader, 0, camera_ray));
+        self.visit(shader, 0, camera_ray);
         let mut next = 0;
         while let Some(&k) = self.active.get(next) {
             next += 1;
             self.spawn(shader, k);
         }
         self.sum();
-        self.slots[0].as_ref().map_or(Vec3::ZERO, |root| root.color)
+        self.slots[0].color
     }
 
     /// Finds what a ray hits and its local colour.
-    fn visit(&self, shader: &mut Shader<'_>, k: u32, ray: Ray) -> Slot {
-        let mut slot = Slot { ray, color: shader.background(), found: None, reflection: 0.0, refraction: 0.0 };
-        if let Some(found) = shader.find(&ray, k > 0) {
-            slot.color = shader.local(k, &ray, &found);
-            slot.found = Some(found);
-            // A slot of the deepest layer has no children.
-            if k < (1 << (self.max_depth - 1)) - 1 {
-                let material = shader.material(&found);
-                (slot.reflection, slot.refraction) = (material.reflection, material.refraction);
-            }
+    fn visit(&mut self, shader: &mut Shader<'_>, k: u32, ray: Ray) {
+        self.active.push(k);
+        // In its place: a slot is too large to be passed around.
+        let slot = &mut self.slots[k as usize];
+        slot.ray = ray;
+        slot.found = shader.find(&ray, k > 0);
+        (slot.reflection, slot.refraction) = (0.0, 0.0);
+        let Some(found) = &slot.found else {
+            slot.color = shader.background();
+            return;
+        };
+        slot.color = shader.local(k, &ray, found);
+        // A slot of the deepest layer has no children.
+        if k < (1 << (self.max_depth - 1)) - 1 {
+            let material = shader.material(found);
+            (slot.reflection, slot.refraction) = (material.reflection, material.refraction);
         }
-        slot
     }
 
     /// Traces the children of a slot.
     fn spawn(&mut self, shader: &mut Shader<'_>, k: u32) {
-        let Some(Slot { ray, found: Some(found), reflection, refraction, .. }) = &self.slots[k as usize] else {
-            return;
-        };
-        let (reflection, refraction) = (*reflection, *refraction);
-        if reflection <= 0.0 && refraction <= 0.0 {
-            return;
-        }
-        let (ray, Found { surface, epsilon, .. }) = (*ray, *found);
-        let material = shader.material(found);
+        let Slot { ray, found, reflection, refraction, .. } = self.slots[k as usize];
+        let Some(found) = found.filter(|_| reflection > 0.0 || refraction > 0.0) else { return };
+        let Found { surface, epsilon, .. } = found;
+        let material = shader.material(&found);
         let child = |direction: Vec3, inside: bool| Ray {
             origin: surface.point,
             direction,
@@ -98,36 +99,30 @@ impl RayTree {
         };
         if reflection > 0.0 {
             let mirrored = child(reflect_at(ray.direction, surface.normal), ray.inside);
-            self.slots[2 * k as usize + 1] = Some(self.visit(shader, 2 * k + 1, mirrored));
-            self.active.push(2 * k + 1);
+            self.visit(shader, 2 * k + 1, mirrored);
         }
         let bent = (refraction > 0.0)
             .then(|| refract_at(ray.direction, surface.normal, material.refraction_ratio, shader.rules()))
             .flatten();
         if let Some(direction) = bent {
             let refracted = child(direction, !ray.inside);
-            self.slots[2 * k as usize + 2] = Some(self.visit(shader, 2 * k + 2, refracted));
-            self.active.push(2 * k + 2);
-        } else if let Some(slot) = &mut self.slots[k as usize] {
-            slot.refraction = 0.0;
+            self.visit(shader, 2 * k + 2, refracted);
+        } else {
+            self.slots[k as usize].refraction = 0.0;
         }
     }
 
     /// Adds the children's colours to their parents', from the deepest up; each ray's colour is at most 1.
     fn sum(&mut self) {
         for &k in self.active.iter().rev() {
-            let Some(slot) = &self.slots[k as usize] else { continue };
+            let slot = &self.slots[k as usize];
             let (mut color, is_hit) = (slot.color, slot.found.is_some());
             for (factor, child) in [(slot.reflection, 2 * k + 1), (slot.refraction, 2 * k + 2)] {
-                if factor > 0.0
-                    && let Some(child) = &self.slots[child as usize]
-                {
-                    color += child.color * factor;
+                if factor > 0.0 {
+                    color += self.slots[child as usize].color * factor;
                 }
             }
-            if let Some(slot) = &mut self.slots[k as usize] {
-                slot.color = if is_hit { color.min(Vec3::ONE) } else { color };
-            }
+            self.slots[k as usize].color = if is_hit { color.min(Vec3::ONE) } else { color };
         }
     }
 
@@ -136,15 +131,23 @@ impl RayTree {
         hits.clear();
         self.active.sort_unstable_by_key(|&k| self.rank[k as usize]);
         for &k in &self.active {
-            if let Some(Slot { found: Some(Found { surface, epsilon, .. }), color, .. }) = &self.slots[k as usize] {
+            if let Slot { found: Some(Found { surface, epsilon, .. }), color, .. } = &self.slots[k as usize] {
                 hits.push(TreeHit { slot: k, surface: *surface, color: *color, epsilon: *epsilon });
             }
         }
     }
 
+    /// Number of hits in the tree of a camera ray.
+    pub(crate) fn hit_count(&mut self, shader: &mut Shader<'_>, camera_ray: Ray) -> usize {
+        shader.look(&[camera_ray], &[0]);
+        shader.begin(0, (0, 0));
+        self.trace(shader, camera_ray);
+        self.active.iter().filter(|&&k| self.slots[k as usize].found.is_some()).count()
+    }
+
     /// What the camera ray of the last tree hit, at which distance.
     pub(crate) fn first_found(&self) -> Option<&Found> {
-        self.slots[0].as_ref().and_then(|slot| slot.found.as_ref())
+        self.slots[0].found.as_ref()
     }
 }
 

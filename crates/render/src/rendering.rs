@@ -1,7 +1,7 @@
 //! Station 6: what a render yields.
 
 use crate::device::Device;
-use crate::device::{Seen, TileResult};
+use crate::device::TileResult;
 use crate::film::Film;
 use crate::settings::Display;
 use crate::stats::Stats;
@@ -65,44 +65,68 @@ impl Rendering {
     }
 }
 
-/// Both passes' films and what the camera rays saw, while they grow.
+/// Both passes' films and what the camera rays saw, summed over samples, while they grow. Planes have row 0 at the top, as they are
+/// to leave.
 pub(crate) struct Canvas {
     width: usize,
     height: usize,
     pub(crate) first: Film,
     pub(crate) second: Film,
-    seen: Vec<Seen>,
+    /// Number of samples, and of those that hit something.
+    samples: Plane<u32>,
+    hits: Plane<u32>,
+    albedo: Image,
+    normal: Image,
+    depth: Plane<f32>,
+    object: Plane<u32>,
+    /// VPLs that lit shaded hits, and the number of these hits.
+    selected: Plane<u64>,
+    shaded: Plane<u64>,
 }
 
 impl Canvas {
     pub(crate) fn new(width: u32, height: u32) -> Self {
+        let (first, second) = (Film::new(width, height), Film::new(width, height));
+        let (width, height) = (width as usize, height as usize);
         Self {
-            width: width as usize,
-            height: height as usize,
-            first: Film::new(width, height),
-            second: Film::new(width, height),
-            seen: vec![Seen::default(); width as usize * height as usize],
+            width,
+            height,
+            first,
+            second,
+            samples: Plane::new(width, height),
+            hits: Plane::new(width, height),
+            albedo: Image::new(width, height),
+            normal: Image::new(width, height),
+            depth: Plane::new(width, height),
+            object: Plane::new(width, height),
+            selected: Plane::new(width, height),
+            shaded: Plane::new(width, height),
         }
     }
 
     /// Adds what a tile's camera rays saw.
     pub(crate) fn see(&mut self, result: &TileResult) {
         for ((i, j), seen) in result.tile.pixels().zip(&result.seen) {
-            let sum = &mut self.seen[j as usize * self.width + i as usize];
-            sum.samples += seen.samples;
-            sum.hits += seen.hits;
-            sum.albedo += seen.albedo;
-            sum.normal += seen.normal;
-            sum.depth += seen.depth;
-            sum.object = if sum.object == 0 { seen.object } else { sum.object };
-            sum.selected += seen.selected;
-            sum.shaded += seen.shaded;
+            let k = (self.height - 1 - j as usize) * self.width + i as usize;
+            if seen.shaded != 0 {
+                self.selected.pixels_mut()[k] += seen.selected;
+                self.shaded.pixels_mut()[k] += seen.shaded;
+            }
+            if seen.samples != 0 {
+                self.samples.pixels_mut()[k] += seen.samples;
+                self.hits.pixels_mut()[k] += seen.hits;
+                self.depth.pixels_mut()[k] += seen.depth;
+                add(&mut self.albedo.pixels_mut()[k], seen.albedo);
+                add(&mut self.normal.pixels_mut()[k], seen.normal);
+                let object = &mut self.object.pixels_mut()[k];
+                *object = if *object == 0 { seen.object } else { *object };
+            }
         }
     }
 
     /// Pixels that differ from a neighbour by more than a threshold, bottom row first.
     pub(crate) fn edges(&self, film: &Film, threshold: f32) -> Vec<bool> {
-        let mut mask = vec![false; self.seen.len()];
+        let mut mask = vec![false; self.width * self.height];
         for j in 0..self.height {
             for i in 0..self.width {
                 for (x, y) in [(i + 1, j), (i, j + 1)] {
@@ -120,35 +144,48 @@ impl Canvas {
     }
 
     /// Turns sums into pictures; `bloom` finishes that of both passes.
-    pub(crate) fn develop(self, bloom: impl FnOnce(Image) -> Image, vpls: Vec<Vpl>, stats: Stats) -> Rendering {
-        let first_pass = self.image(|i, j| self.first.color(i, j));
-        let second_pass = self.image(|i, j| self.second.color(i, j));
-        let sum = self.image(|i, j| (self.first.color(i, j) + self.second.color(i, j)).min(Vec3::ONE));
-        let mean = |sum: Vec3, count: u32| if count == 0 { Vec3::ZERO } else { sum / count as f32 };
+    pub(crate) fn develop(mut self, bloom: impl FnOnce(Image) -> Image, vpls: Vec<Vpl>, stats: Stats) -> Rendering {
+        let (first_pass, second_pass) = (self.image(&self.first), self.image(&self.second));
+        let both = first_pass.pixels().iter().zip(second_pass.pixels());
+        let both = both.map(|(&a, &b)| (Vec3::from(a) + Vec3::from(b)).min(Vec3::ONE).to_array()).collect();
+        let both = Image::from_pixels(self.width, self.height, both).expect("a sum for each pixel");
+        divide(&mut self.albedo, &self.samples);
+        divide(&mut self.normal, &self.hits);
+        for (depth, &hits) in self.depth.pixels_mut().iter_mut().zip(self.hits.pixels()) {
+            *depth = if hits == 0 { f32::INFINITY } else { *depth / hits as f32 };
+        }
+        let mean = |selected: u64, shaded: u64| if shaded == 0 { 0.0 } else { selected as f32 / shaded as f32 };
+        let selected = |x, y| mean(self.selected.get(x, y), self.shaded.get(x, y));
         Rendering {
-            beauty: bloom(sum),
+            beauty: bloom(both),
             first_pass,
             second_pass,
-            albedo: self.image(|i, j| mean(self.at(i, j).albedo, self.at(i, j).samples)),
-            normal: self.image(|i, j| mean(self.at(i, j).normal, self.at(i, j).hits)),
-            depth: self.plane(|s| if s.hits == 0 { f32::INFINITY } else { s.depth / s.hits as f32 }),
-            object_id: self.plane(|s| s.object),
-            lights_selected: self.plane(|s| if s.shaded == 0 { 0.0 } else { s.selected as f32 / s.shaded as f32 }),
+            lights_selected: Plane::from_fn(self.width, self.height, selected),
+            albedo: self.albedo,
+            normal: self.normal,
+            depth: self.depth,
+            object_id: self.object,
             vpls,
             stats,
         }
     }
 
-    fn at(&self, i: usize, j: usize) -> &Seen {
-        &self.seen[j * self.width + i]
+    /// The picture on a film.
+    fn image(&self, film: &Film) -> Image {
+        Image::from_fn(self.width, self.height, |x, y| film.color(x, self.height - 1 - y).to_array())
     }
+}
 
-    /// A picture from a function of (i, j), j from the bottom.
-    fn image(&self, color: impl Fn(usize, usize) -> Vec3) -> Image {
-        Image::from_fn(self.width, self.height, |x, y| color(x, self.height - 1 - y).to_array())
-    }
+fn add(sum: &mut [f32; 3], value: Vec3) {
+    *sum = (Vec3::from(*sum) + value).to_array();
+}
 
-    fn plane<T: Copy>(&self, value: impl Fn(&Seen) -> T) -> Plane<T> {
-        Plane::from_fn(self.width, self.height, |x, y| value(self.at(x, self.height - 1 - y)))
+/// Makes sums means; 0 where nothing was summed.
+fn divide(sums: &mut Image, counts: &Plane<u32>) {
+    for (sum, &count) in sums.pixels_mut().iter_mut().zip(counts.pixels()) {
+        // Most often there is one sample.
+        if count > 1 {
+            *sum = (Vec3::from(*sum) / count as f32).to_array();
+        }
     }
 }

@@ -17,6 +17,9 @@ use lightcuts_kernel::texture::{sample_texture, surface_point};
 use lightcuts_world::World;
 use lightcuts_world::bvh::LANES;
 
+/// Camera rays that look together: so many as shadow rays to one VPL go together.
+pub(crate) const TOGETHER: usize = 32;
+
 /// What a ray hit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Found {
@@ -26,18 +29,12 @@ pub(crate) struct Found {
     pub(crate) epsilon: f32,
 }
 
-/// What a camera ray found, and the VPLs' light there: of neighbouring rays together, which is quicker.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct First {
-    found: Option<Found>,
-    gathered: Option<(Gathered, TreeVisits)>,
-}
-
 /// Shades hits and counts what that takes. One per worker and tile.
 pub(crate) struct Shader<'a> {
     world: &'a World,
     tracer: Tracer<'a>,
-    lighting: Lighting<'a>,
+    /// None where rays are only to be followed.
+    lighting: Option<Lighting<'a>>,
     walls: &'a Walls,
     /// Place of the camera ray in the run, for random numbers: pixel and sample.
     pub(crate) place: (u32, u32),
@@ -49,14 +46,17 @@ pub(crate) struct Shader<'a> {
     candidates: Vec<Candidates>,
     /// The same of hits that are gathered together, one after the other.
     candidates_together: Vec<Candidates>,
-    /// What is known of the current camera ray before it is traced.
-    pub(crate) first: Option<First>,
+    /// What is known of camera rays before they are traced: what they hit, and the VPLs' light there.
+    firsts: Vec<Option<Found>>,
+    gathered: Vec<Option<(Gathered, TreeVisits)>>,
+    /// The number of the current one.
+    current: usize,
 }
 
 impl<'a> Shader<'a> {
-    pub(crate) fn new(world: &'a World, tracer: Tracer<'a>, lighting: Lighting<'a>, walls: &'a Walls) -> Self {
+    pub(crate) fn new(world: &'a World, tracer: Tracer<'a>, lighting: Option<Lighting<'a>>, walls: &'a Walls) -> Self {
         let candidates = match lighting {
-            Lighting::Vpls(VplLighting { tree, strategy: Strategy::All, .. }) => tree.every_block(true).collect(),
+            Some(Lighting::Vpls(VplLighting { tree, strategy: Strategy::All, .. })) => tree.every_block(true).collect(),
             _ => Vec::new(),
         };
         Self {
@@ -70,7 +70,9 @@ impl<'a> Shader<'a> {
             selected: Vec::new(),
             candidates,
             candidates_together: Vec::new(),
-            first: None,
+            firsts: Vec::new(),
+            gathered: Vec::new(),
+            current: 0,
         }
     }
 
@@ -81,18 +83,15 @@ impl<'a> Shader<'a> {
     /// Colour of a ray that leaves the scene.
     pub(crate) fn background(&self) -> Vec3 {
         match self.lighting {
-            Lighting::Scene { .. } => self.world.background,
-            Lighting::Vpls(_) => Vec3::ZERO,
+            Some(Lighting::Scene { .. }) => self.world.background,
+            Some(Lighting::Vpls(_)) | None => Vec3::ZERO,
         }
     }
 
     /// What a ray hits first. The ray's direction is of unit length.
     pub(crate) fn find(&mut self, ray: &Ray, secondary: bool) -> Option<Found> {
         *if secondary { &mut self.rays.secondary } else { &mut self.rays.primary } += 1;
-        match self.first {
-            Some(first) if !secondary => first.found,
-            _ => self.found(ray, self.tracer.closest(ray)),
-        }
+        if secondary { self.found(ray, self.tracer.closest(ray)) } else { self.firsts[self.current] }
     }
 
     fn found(&self, ray: &Ray, hit: Hit) -> Option<Found> {
@@ -106,29 +105,36 @@ impl<'a> Shader<'a> {
         &self.world.materials[found.surface.material as usize]
     }
 
-    /// What neighbouring camera rays find, and the VPLs' light there.
-    pub(crate) fn look(&mut self, rays: &[Ray], firsts: &mut [First]) {
-        for (rays, firsts) in rays.chunks(LANES).zip(firsts.chunks_mut(LANES)) {
-            let hits = self.tracer.closest8(&std::array::from_fn(|lane| rays[lane.min(rays.len() - 1)]));
-            for ((ray, hit), first) in rays.iter().zip(hits).zip(firsts) {
-                *first = First { found: self.found(ray, hit), gathered: None };
+    /// Finds what camera rays hit, and the VPLs' light there. Those that follow each other in `order` are neighbours.
+    pub(crate) fn look(&mut self, rays: &[Ray], order: &[usize]) {
+        self.firsts.resize(rays.len(), None);
+        for eight in order.chunks(LANES) {
+            let hits = self.tracer.closest8(&std::array::from_fn(|lane| rays[eight[lane.min(eight.len() - 1)]]));
+            for (&k, hit) in eight.iter().zip(hits) {
+                self.firsts[k] = self.found(&rays[k], hit);
             }
         }
-        // Among few spheres and squares alone, eight VPLs for one point are as quick: there is no way down a hierarchy to share.
-        if let Lighting::Vpls(vpls) = self.lighting
-            && !self.tracer.geometry.triangles.is_empty()
-        {
-            self.gather_together(&vpls, firsts);
+        if let Some(Lighting::Vpls(vpls)) = self.lighting {
+            self.gathered.clear();
+            self.gathered.resize(rays.len(), None);
+            order.chunks(TOGETHER).for_each(|neighbours| self.gather_together(&vpls, neighbours));
         }
     }
 
-    fn gather_together(&mut self, vpls: &VplLighting<'_>, firsts: &mut [First]) {
-        let mut places = Vec::with_capacity(firsts.len());
-        let mut receivers = Vec::with_capacity(firsts.len());
-        let (mut all_visits, mut ends) = (Vec::with_capacity(firsts.len()), Vec::with_capacity(firsts.len()));
+    /// Goes on to a camera ray of those that have looked.
+    pub(crate) fn begin(&mut self, current: usize, place: (u32, u32)) {
+        (self.current, self.place) = (current, place);
+        self.selected.clear();
+    }
+
+    fn gather_together(&mut self, vpls: &VplLighting<'_>, neighbours: &[usize]) {
+        let mut places = Vec::with_capacity(neighbours.len());
+        let mut receivers = Vec::with_capacity(neighbours.len());
+        let (mut all_visits, mut ends) = (Vec::with_capacity(neighbours.len()), Vec::with_capacity(neighbours.len()));
         self.candidates_together.clear();
-        for (place, first) in firsts.iter().enumerate() {
-            let Some(found) = first.found.filter(|found| self.material(found).local != 0.0) else { continue };
+        for &place in neighbours {
+            let found = self.firsts[place].filter(|found| self.material(found).local != 0.0);
+            let Some(found) = found else { continue };
             places.push(place);
             receivers.push(self.receiver(&found));
             all_visits.push(choose(vpls, &self.tracer, found.surface.point, &mut self.candidates_together));
@@ -141,7 +147,7 @@ impl<'a> Shader<'a> {
         let lists: Vec<&[Candidates]> = (0..places.len()).map(list).collect();
         let gathered = evaluate_together(&self.tracer, &blocks(vpls, self.walls), &lists, threshold(vpls), &receivers);
         for ((place, gathered), visits) in places.into_iter().zip(gathered).zip(all_visits) {
-            firsts[place].gathered = Some((gathered, visits));
+            self.gathered[place] = Some((gathered, visits));
         }
     }
 
@@ -149,16 +155,17 @@ impl<'a> Shader<'a> {
     pub(crate) fn local(&mut self, slot: u32, ray: &Ray, found: &Found) -> Vec3 {
         let Material { local, glow, .. } = *self.material(found);
         match self.lighting {
-            Lighting::Scene { .. } if local == 0.0 => glow,
-            Lighting::Scene { occlusion } => {
+            None => Vec3::ZERO,
+            Some(Lighting::Scene { .. }) if local == 0.0 => glow,
+            Some(Lighting::Scene { occlusion }) => {
                 let lit = self.direct(ray, found);
                 let open = occlusion.map_or(1.0, |occlusion| {
                     occlusion.openness(&self.tracer, found, (self.place, slot), &mut self.rays)
                 });
                 lit * local * open + glow
             }
-            Lighting::Vpls(_) if local == 0.0 => Vec3::ZERO,
-            Lighting::Vpls(vpls) => self.gather(&vpls, found, slot == 0) * local,
+            Some(Lighting::Vpls(_)) if local == 0.0 => Vec3::ZERO,
+            Some(Lighting::Vpls(vpls)) => self.gather(&vpls, found, slot == 0) * local,
         }
     }
 
@@ -192,7 +199,7 @@ impl<'a> Shader<'a> {
     /// The VPLs chosen for a hit, and caustics.
     fn gather(&mut self, vpls: &VplLighting<'_>, found: &Found, is_first: bool) -> Vec3 {
         let surface = &found.surface;
-        let known = self.first.filter(|_| is_first).and_then(|first| first.gathered);
+        let known = if is_first { self.gathered[self.current] } else { None };
         let (gathered, visits) = known.unwrap_or_else(|| {
             if vpls.strategy != Strategy::All {
                 self.candidates.clear();

@@ -79,7 +79,7 @@ pub(super) fn occluded(tracer: &Tracer<'_>, rays: &[Ray; LANES], asked: u32) -> 
 
 /// Eight vectors by their coordinates.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-fn wide3(vectors: [Vec3; LANES]) -> Wide3 {
+pub(super) fn wide3(vectors: [Vec3; LANES]) -> Wide3 {
     [load(&vectors.map(|v| v.x)), load(&vectors.map(|v| v.y)), load(&vectors.map(|v| v.z))]
 }
 

@@ -8,21 +8,25 @@
 use super::avx2_bundle::ALL;
 use super::avx2_fan::{PACKETS, miss_mesh};
 use super::avx2_packet::{Packet, height_of, sphere_from};
-use super::avx2_trace::{Wide3, lanes};
+use super::avx2_trace::{Wide3, dot, lanes, load3, splat3, store, sub};
 use super::stack::Stack;
 use super::tracer::Tracer;
-use super::walls::{FEW, Shared, Sides, Walls};
+use super::walls::{FEW, Shared, Sides, Stand, Walls};
+use crate::light_node::VplBlock;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::ray::ORIGINAL_EPSILON;
 use lightcuts_world::bvh::{Geometry, LANES};
 use std::arch::x86_64::{
-    __m256, _CMP_GE_OQ, _CMP_LE_OQ, _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps, _mm256_movemask_ps, _mm256_set1_ps,
-    _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps,
+    __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _mm256_andnot_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps,
+    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps,
 };
 
 /// Packets that are collected, a bit each in masks: what is kept of them stays in the nearest cache.
 pub(super) const MOST: usize = u32::BITS as usize;
+
+// SAFETY: all bits 0 are eight numbers.
+const ZERO: __m256 = unsafe { std::mem::zeroed() };
 
 /// Where shadow rays begin, with what depends on that alone.
 pub(super) struct Source {
@@ -33,7 +37,12 @@ pub(super) struct Source {
     spheres: Stack<(Wide3, __m256), FEW>,
     /// Of each of a few squares how far its centre is along its normal.
     heights: Stack<__m256, FEW>,
-    sides: Sides,
+    stand: Stand,
+    /// Somewhere in the middle of the origins; with each of a few spheres the vector from there to its centre, and the square of the
+    /// distance that lines from there must keep from it if no ray from any of the origins is to hit it. Without spheres where the
+    /// origins are not in the room.
+    middle: Wide3,
+    berths: Stack<(Wide3, __m256), FEW>,
 }
 
 /// Eight shadow rays, and how the VPLs that they end at light the points if nothing is hit; with that, twin of `VplIncidence`.
@@ -56,26 +65,39 @@ pub(super) struct Shadow {
 }
 
 impl Source {
-    /// To be told next where its origins lie. Apart, for what is made here is not to be copied.
-    #[inline]
-    pub(super) fn new(origin: Wide3, epsilon: __m256) -> Self {
-        Self { origin, epsilon, spheres: Stack::new(), heights: Stack::new(), sides: Sides::default() }
+    /// To be told where its origins are. Apart, for what is kept of them is not to be copied.
+    pub(super) const fn new() -> Self {
+        Self {
+            origin: [ZERO; 3],
+            epsilon: ZERO,
+            spheres: Stack::new(),
+            heights: Stack::new(),
+            stand: Stand::NOWHERE,
+            middle: [ZERO; 3],
+            berths: Stack::new(),
+        }
     }
 
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    pub(super) fn look(&mut self, geometry: &Geometry<'_>, walls: &Walls) {
-        let (origin, zero) = (self.origin, _mm256_setzero_ps());
+    pub(super) fn set(&mut self, tracer: &Tracer<'_>, walls: &Walls, (origin, epsilon): (Wide3, __m256)) {
+        let Tracer { geometry, rules, .. } = tracer;
+        (self.origin, self.epsilon) = (origin, epsilon);
+        let zero = _mm256_setzero_ps();
+        let all = |mask: __m256| u32::from(_mm256_movemask_ps(mask) as u32 == ALL);
         for sphere in geometry.spheres.iter().take(FEW) {
             self.spheres.push(sphere_from(sphere, origin));
         }
-        let all = |mask: __m256| u32::from(_mm256_movemask_ps(mask) as u32 == ALL);
-        let mut sides = Sides::default();
+        let mut stand = Stand::NOWHERE;
+        let epsilon = store(self.epsilon).into_iter().fold(f32::INFINITY, f32::min);
+        let verge = _mm256_set1_ps(walls.verge(*rules, epsilon));
         for (index, square) in geometry.squares.iter().take(FEW).enumerate() {
             let height = height_of(square, origin);
             self.heights.push(height);
             // The centre is behind points in front.
-            sides.front |= u64::from(all(_mm256_cmp_ps::<_CMP_LE_OQ>(height, zero))) << index;
-            sides.back |= u64::from(all(_mm256_cmp_ps::<_CMP_GE_OQ>(height, zero))) << index;
+            stand.sides.front |= u64::from(all(_mm256_cmp_ps::<_CMP_LE_OQ>(height, zero))) << index;
+            stand.sides.back |= u64::from(all(_mm256_cmp_ps::<_CMP_GE_OQ>(height, zero))) << index;
+            let distance = _mm256_andnot_ps(_mm256_set1_ps(-0.0), height);
+            stand.on |= u64::from(all(_mm256_cmp_ps::<_CMP_LE_OQ>(distance, verge))) << index;
         }
         // Of three planes across the axes those that all origins are above, and below.
         let above = |planes: Vec3| {
@@ -86,19 +108,66 @@ impl Source {
             let below = |axis: usize| all(_mm256_cmp_ps::<_CMP_LE_OQ>(origin[axis], _mm256_set1_ps(planes[axis])));
             below(0) | below(1) << 1 | below(2) << 2
         };
-        if above(walls.lower) & below(walls.upper) != 0b111 {
+        if above(walls.room.lower) & below(walls.room.upper) != 0b111 {
             return;
         }
         for (number, &(lower, upper)) in walls.boxes.iter().enumerate() {
-            sides.add_faces(number, below(lower) | above(upper) << 3);
+            stand.sides.add_faces(number, below(lower) | above(upper) << 3);
         }
-        self.sides = sides;
+        self.stand = stand;
+        self.measure(geometry, walls);
+    }
+
+    /// Finds how far from spheres ways that begin in the middle of the origins must keep.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    fn measure(&mut self, geometry: &Geometry<'_>, walls: &Walls) {
+        let [x, y, z] = [store(self.origin[0]), store(self.origin[1]), store(self.origin[2])];
+        let origins: [Vec3; LANES] = std::array::from_fn(|lane| Vec3::new(x[lane], y[lane], z[lane]));
+        let (lower, upper) = origins.iter().fold((origins[0], origins[0]), |(l, u), &p| (l.min(p), u.max(p)));
+        let middle = lower.midpoint(upper);
+        let spread_sq = origins.iter().map(|&origin| (origin - middle).length_squared()).fold(0.0, f32::max);
+        let spread = f64::from(spread_sq).sqrt() * (1.0 + 4.0 * f64::from(f32::EPSILON));
+        self.middle = splat3(middle);
+        for (sphere, berth) in geometry.spheres.iter().zip(&walls.berths) {
+            let berth_sq = _mm256_set1_ps((berth + spread).powi(2) as f32);
+            self.berths.push((splat3(sphere.center - middle), berth_sq));
+        }
+    }
+
+    /// Of a block's VPLs those that nothing can hide from any of the origins, a bit each.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    pub(super) fn sees(&self, geometry: &Geometry<'_>, walls: &Walls, number: u32, block: &VplBlock) -> u32 {
+        let shared = self.shared(walls.sides(number));
+        let is_hidden = !walls.has_inside(number)
+            || self.berths.size < geometry.spheres.len()
+            || geometry.squares.len() > FEW
+            || shared.crossed(geometry.squares.len()) != 0
+            || !geometry.triangles.is_empty() && shared.may_meet_mesh();
+        if is_hidden {
+            return 0;
+        }
+        let way = sub(load3(&block.position), self.middle);
+        let length_sq = dot(way, way);
+        let mut seen = ALL;
+        for (sphere, &(center, berth_sq)) in self.berths.as_slice().iter().enumerate() {
+            if !shared.may_meet_sphere(sphere) {
+                continue;
+            }
+            // The point of the way that is nearest to the centre; a way of no length is the same everywhere.
+            let along = _mm256_div_ps(dot(center, way), length_sq);
+            let along = _mm256_max_ps(_mm256_min_ps(along, _mm256_set1_ps(1.0)), _mm256_setzero_ps());
+            let offset_on = |axis: usize| _mm256_sub_ps(center[axis], _mm256_mul_ps(way[axis], along));
+            let offset = [offset_on(0), offset_on(1), offset_on(2)];
+            seen &= _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(dot(offset, offset), berth_sq)) as u32;
+        }
+        seen
     }
 
     /// Of shadow rays to places on some sides.
     #[inline]
     pub(super) fn shared(&self, ends: Sides) -> Shared {
-        self.sides.shared(ends)
+        self.stand.shared(ends)
     }
 
     /// A shadow ray as `kernel::ray::shadow_ray` makes it.

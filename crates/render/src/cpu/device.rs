@@ -5,6 +5,7 @@ use crate::device::{Device, DeviceFault, DeviceInfo, DeviceKind, Lighting, Pass,
 use crate::film::Tile;
 use crate::light_tree::{LightTree, TreeLayout};
 use crate::monitor::Monitor;
+use crate::original_rows::original_shifts;
 use crate::photon_map::PhotonMap;
 use crate::settings::Caustics;
 use lightcuts_image::{Image, ToneMapping};
@@ -77,9 +78,8 @@ impl Device for CpuDevice<'_> {
         Ok(results)
     }
 
-    /// None: rows are traced one after the other.
-    fn original_shifts(&self, _view: &View<'_>) -> Result<Option<Vec<[f32; 2]>>, DeviceFault> {
-        Ok(None)
+    fn original_shifts(&self, view: &View<'_>) -> Result<Vec<[f32; 2]>, DeviceFault> {
+        Ok(original_shifts(view, self.tracer(view)))
     }
 
     fn shoot_photons(

@@ -245,7 +245,7 @@ pub(crate) fn evaluate(
     gathered
 }
 
-/// [`evaluate`] for some points, each with its candidates in the order of their blocks. Quicker than one by one where points are
+/// [`evaluate`] for at most 32 points, each with its candidates in the order of their blocks. Quicker than one by one where points are
 /// neighbours, in the order of how near they are.
 #[allow(unsafe_code)]
 pub(crate) fn evaluate_together(
@@ -258,7 +258,7 @@ pub(crate) fn evaluate_together(
     #[cfg(target_arch = "x86_64")]
     if tracer.avx2 && at.len() > 1 {
         // SAFETY: `avx2` is set only where the machine has the feature.
-        return unsafe { super::avx2_gather::evaluate_together(tracer, blocks, candidates, threshold, at) };
+        return unsafe { super::avx2_together::evaluate_together(tracer, blocks, candidates, threshold, at) };
     }
     let each = |(at, candidates): (&Receiver, &&[Candidates])| evaluate(tracer, blocks, candidates, threshold, at);
     at.iter().zip(candidates).map(each).collect()

@@ -14,10 +14,13 @@ mod avx2_packet;
 #[cfg(target_arch = "x86_64")]
 mod avx2_shadows;
 #[cfg(target_arch = "x86_64")]
+mod avx2_together;
+#[cfg(target_arch = "x86_64")]
 mod avx2_trace;
 mod device;
 mod gather;
 mod lanes;
+mod room;
 #[cfg(target_arch = "x86_64")]
 mod stack;
 mod tracer;

@@ -331,8 +331,8 @@ impl SamplePass<'_> {
         result: &mut SampledTile,
     ) {
         let Sampled { radiance, first, cut, bound } = *sampled;
-        result.all.add(self.filter, i, j, shift, radiance.all);
-        result.indirect.add(self.filter, i, j, shift, radiance.indirect);
+        result.all.add(i, j, shift, radiance.all);
+        result.indirect.add(i, j, shift, radiance.indirect);
         let emitted = f64::from(light_power(radiance.emitted));
         let reflected = f64::from(light_power(radiance.all)) - emitted;
         // Lights in the picture are the same to all techniques, and pixels on their edges vary more than all others.

@@ -4,8 +4,8 @@ use crate::{scene, small_scene};
 use lightcuts_image::{Image, ToneMapping, max_abs_difference};
 use lightcuts_kernel::light::Vpl;
 use lightcuts_render::device::{
-    CpuDevice, Device, DeviceFault, DeviceInfo, DeviceKind, LightTree, Pass, PhotonMap, Shifts, Tile, TileResult,
-    TreeLayout, View,
+    CpuDevice, Device, DeviceFault, DeviceInfo, DeviceKind, LightTree, Pass, PhotonMap, Tile, TileResult, TreeLayout,
+    View,
 };
 use lightcuts_render::{Caustics, Monitor, Options, Rendering, Settings, Simd, Stage, Station, Stations, render_on};
 use lightcuts_world::World;
@@ -26,10 +26,6 @@ struct Fake<'a> {
     /// The stations' functions that were called.
     calls: Mutex<Vec<&'static str>>,
     revivals: AtomicU64,
-    /// Shifts given beforehand.
-    shifts: Option<Vec<[f32; 2]>>,
-    /// Shifts that passes were rendered with.
-    seen_shifts: Mutex<Vec<[f32; 2]>>,
 }
 
 impl<'a> Fake<'a> {
@@ -43,8 +39,6 @@ impl<'a> Fake<'a> {
             forgetful: false,
             calls: Mutex::default(),
             revivals: AtomicU64::new(0),
-            shifts: None,
-            seen_shifts: Mutex::default(),
         }
     }
 
@@ -76,15 +70,12 @@ impl Device for Fake<'_> {
         tiles: &[Tile],
         monitor: &dyn Monitor,
     ) -> Result<Vec<Option<TileResult>>, DeviceFault> {
-        if let Shifts::Given(shifts) = pass.shifts {
-            shifts.clone_into(&mut self.seen_shifts.lock().expect("no panic"));
-        }
         let mut results = self.cpu.render_tiles(pass, tiles, monitor)?;
         results.truncate(tiles.len() - usize::from(self.forgetful));
         self.after("tiles", Ok(results))
     }
-    fn original_shifts(&self, _: &View<'_>) -> Result<Option<Vec<[f32; 2]>>, DeviceFault> {
-        self.after("shifts", Ok(self.shifts.clone()))
+    fn original_shifts(&self, view: &View<'_>) -> Result<Vec<[f32; 2]>, DeviceFault> {
+        self.after("shifts", self.cpu.original_shifts(view))
     }
     fn shoot_photons(
         &self,
@@ -248,28 +239,21 @@ fn a_device_that_forgets_tiles_does_not_make_the_picture() {
     assert_eq!(kinds(&rendering), kinds(&expected));
 }
 
-/// Shifts found beforehand give the original's VPLs and picture; so they do if the device goes away midway.
+/// The original's VPLs and picture come out, no matter whether the device goes away while the shifts are found or later.
 #[test]
-fn shifts_given_beforehand_reproduce_the_original() {
+fn faults_leave_the_original_reproduced() {
     let (world, mut settings) = scene("thesis/simple.txt", Vec::new());
     settings.run.reproduce = true;
-    let by_rows = Fake { tiles_at_once: 64, ..Fake::new(&world) };
-    let stations = Stations::all(&by_rows).with(Station::Gather, &by_rows.cpu);
-    let (expected, _) = render_noting(&world, &settings, &stations);
-    assert_eq!((expected.vpls.len(), by_rows.calls()[0]), (290, "shifts"));
-    let shifts = by_rows.seen_shifts.into_inner().unwrap();
-    for (faults, can_be_revived) in [(None, true), (Some(4), false)] {
-        let foreseeing =
-            Fake { tiles_at_once: 64, shifts: Some(shifts.clone()), can_be_revived, ..Fake::faulting(&world, faults) };
-        let (rendering, _) = render_noting(&world, &settings, &Stations::all(&foreseeing));
-        assert_same_picture(&expected, &rendering, &format!("given shifts, faults at {faults:?}"));
-        assert_eq!(kinds(&rendering)[0], ("place", if can_be_revived { FAKE } else { "cpu" }));
+    let cpu = CpuDevice::new(&world, Simd::Auto);
+    let (expected, _) = render_noting(&world, &settings, &Stations::all(&cpu));
+    assert_eq!(expected.vpls.len(), 290);
+    for fault in [0, 4] {
+        let gone = Fake { tiles_at_once: 64, can_be_revived: false, ..Fake::faulting(&world, [fault]) };
+        let (rendering, notes) = render_noting(&world, &settings, &Stations::all(&gone));
+        assert_same_picture(&expected, &rendering, &format!("fault {fault}"));
+        assert_eq!((notes.len(), gone.calls().len(), gone.calls()[0]), (1, fault + 1, "shifts"));
+        assert_eq!(kinds(&rendering)[0], ("place", "cpu"));
     }
-    // Without the device there are no shifts beforehand: row by row.
-    let gone = Fake { shifts: Some(shifts), can_be_revived: false, ..Fake::faulting(&world, [0]) };
-    let (rendering, notes) = render_noting(&world, &settings, &Stations::all(&gone));
-    assert_same_picture(&expected, &rendering, "shifts fail");
-    assert_eq!((notes.len(), gone.calls()), (1, vec!["shifts"]));
 }
 
 #[test]
