@@ -49,16 +49,21 @@ pub struct RelevanceBounds {
     pub least_volume: f32,
 }
 
-/// Bounds on the relevance of a cluster.
+/// Bounds on the relevance of a cluster for a point.
+pub fn relevance_bounds(cluster: &LightCluster, point: Vec3) -> RelevanceBounds {
+    relevance_bounds_in(cluster, (point, point))
+}
+
+/// Bounds on the relevance of a cluster for all points of a box, given by its lower and its upper corner.
 ///
-/// With v the vectors from the cluster's positions to the point, a box, and a the angle between v and the cone's axis:
+/// With v the vectors from the cluster's positions to the points, a box, and a the angle between v and the cone's axis:
 /// |v| cos a = v . axis lies between its values at two corners, |v| between the distances of the nearest and the
 /// farthest point. The VPLs' own directions deviate from the axis by at most the cone's half angle s, so the cosine at
 /// the light is at most cos(a - s) <= cos a cos s + sin s and at least cos(a + s) >= cos a cos s - sin s (Walter et al.
 /// 2005, section 5.3; sin a is bounded by 1, which costs little where a decision is near, at grazing angles, and saves
 /// two square roots).
-pub fn relevance_bounds(cluster: &LightCluster, point: Vec3) -> RelevanceBounds {
-    let (from_upper, from_lower) = (point - cluster.upper, point - cluster.lower);
+pub fn relevance_bounds_in(cluster: &LightCluster, (lower, upper): (Vec3, Vec3)) -> RelevanceBounds {
+    let (from_upper, from_lower) = (lower - cluster.upper, upper - cluster.lower);
     let outside = from_upper.max(-from_lower).max(Vec3::ZERO);
     let farthest = from_lower.abs().max(from_upper.abs());
     let (near_sq, far_sq) = (outside.dot(outside), farthest.dot(farthest));
@@ -89,7 +94,12 @@ pub enum Decision {
 
 /// Compares a cluster's bounds with a threshold, leaving [`BOUND_MARGIN`] to the exact test.
 pub fn decide(cluster: &LightCluster, point: Vec3, threshold: f32) -> Decision {
-    let bounds = relevance_bounds(cluster, point);
+    decide_in(cluster, (point, point), threshold)
+}
+
+/// [`decide`] for all points of a box, given by its lower and its upper corner.
+pub fn decide_in(cluster: &LightCluster, points: (Vec3, Vec3), threshold: f32) -> Decision {
+    let bounds = relevance_bounds_in(cluster, points);
     if bounds.greatest_flux < threshold * (1.0 - BOUND_MARGIN) * bounds.least_volume {
         Decision::Reject
     } else if bounds.least_flux >= threshold * (1.0 + BOUND_MARGIN) * bounds.greatest_volume && bounds.least_flux > 0.0

@@ -338,15 +338,17 @@ pub(crate) mod tests {
 
     #[test]
     fn the_bounds_hold_for_ten_thousand_points_and_every_cluster() {
-        use lightcuts_kernel::light_tree::{BOUND_MARGIN, relevance_bounds};
+        use lightcuts_kernel::light_tree::{BOUND_MARGIN, relevance_bounds_in};
         let tree = LightTree::build(&scattered(300), TreeLayout::Wide);
         let clusters = clusters(&tree);
         let mut decided = 0;
         for sample in 0..10_000 {
-            let [a, b, c, _] = random4(sample, 5, 0, 3);
+            let [a, b, c, d] = random4(sample, 5, 0, 3);
             let point = (Vec3::new(a, b, c) - 0.5) * 420.0;
+            // Every other time as one of a box.
+            let reach = Vec3::new(c, a, b) * if sample % 2 == 0 { 0.0 } else { 100.0 * d * d * d };
             for (part, vpls) in &clusters {
-                let bounds = relevance_bounds(&part.cluster, point);
+                let bounds = relevance_bounds_in(&part.cluster, (point - reach, point + reach * d));
                 let least = (bounds.least_flux / bounds.greatest_volume).max(0.0);
                 let greatest = bounds.greatest_flux / bounds.least_volume;
                 decided += u32::from(least > 0.0 || greatest == 0.0);
@@ -383,9 +385,9 @@ pub(crate) mod tests {
                 let point = (Vec3::new(a, b, c) - 0.5) * 400.0;
                 let threshold = if sample % 10 == 0 { 0.0 } else { 10.0_f32.powf(-8.0 + 4.0 * d) };
                 let (mut found, mut expected) = (Vec::new(), Vec::new());
-                let visits = select(&tree, Simd::Auto.has_avx2(), point, threshold, &mut found);
+                let visits = select(&tree, Simd::Auto.has_avx2(), (point, point), threshold, &mut found);
                 let mut plain = Vec::new();
-                assert_eq!(select(&tree, false, point, threshold, &mut plain), visits);
+                assert_eq!(select(&tree, false, (point, point), threshold, &mut plain), visits);
                 assert_eq!(plain, found);
                 select_exhaustively(&tree, &mut expected);
                 let (found, expected) =

@@ -59,6 +59,7 @@ mod tests {
     use crate::light_tree::tests::chosen;
     use crate::light_tree::{LightTree, TreeLayout};
     use crate::{Options, Settings, Stations, Unwatched};
+    use glam::Vec3;
     use lightcuts_import::{ImportOptions, load};
     use lightcuts_testkit::{project_root, shared};
     use lightcuts_world::World;
@@ -82,17 +83,24 @@ mod tests {
             draws.skip_light_tree(vpls.len());
             let shifts: Vec<[f32; 2]> = (0..512).flat_map(|_| draws.row(512)).collect();
             let pass = job.pass(Lighting::Scene { occlusion: None }, Shifts::Given(&shifts), Wants::SurfacesAndHits);
-            let mut hits = Vec::new();
+            let mut hits: Vec<TreeHit> = Vec::new();
             job.merge_tiles(Station::Place, &pass, &job.tiles(), |_, result| hits.extend(result.hits));
-            let (mut found, mut expected) = (Vec::new(), Vec::new());
-            for hit in &hits {
-                found.clear();
-                expected.clear();
-                let (point, threshold) = (hit.surface.point, settings.gather.threshold);
-                select(&tree, Simd::Auto.has_avx2(), point, threshold, &mut found);
-                select_exhaustively(&tree, &mut expected);
-                let sets = [&found, &expected].map(|candidates| chosen(&tree, candidates, point, threshold));
-                assert_eq!(sets[0], sets[1], "{name} at {point}");
+            let (mut found, mut together, mut expected) = (Vec::new(), Vec::new(), Vec::new());
+            select_exhaustively(&tree, &mut expected);
+            let (threshold, avx2) = (settings.gather.threshold, Simd::Auto.has_avx2());
+            for neighbours in hits.chunks(32) {
+                together.clear();
+                let points = || neighbours.iter().map(|hit| hit.surface.point);
+                let corners = (points().fold(Vec3::INFINITY, Vec3::min), points().fold(Vec3::NEG_INFINITY, Vec3::max));
+                select(&tree, avx2, corners, threshold, &mut together);
+                for point in points() {
+                    found.clear();
+                    select(&tree, avx2, (point, point), threshold, &mut found);
+                    let all = [&found, &together, &expected];
+                    let [found, together, expected] = all.map(|some| chosen(&tree, some, point, threshold));
+                    assert_eq!(found, expected, "{name} at {point}");
+                    assert_eq!(together, expected, "{name} at {point}, with neighbours");
+                }
             }
             println!("{name}: the sets of all {} hits are equal", hits.len());
         }

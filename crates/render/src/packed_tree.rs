@@ -153,7 +153,7 @@ mod tests {
                     let threshold = if sample.is_multiple_of(10) { 0.0 } else { 10.0_f32.powf(-8.0 + 4.0 * d) };
                     for (tree, visited) in trees.iter().zip(&mut visited) {
                         let (mut found, mut expected) = (Vec::new(), Vec::new());
-                        let visits = select(tree, Simd::Auto.has_avx2(), point, threshold, &mut found);
+                        let visits = select(tree, Simd::Auto.has_avx2(), (point, point), threshold, &mut found);
                         select_exhaustively(tree, &mut expected);
                         let sets = [found, expected].map(|some| chosen(tree, &some, point, threshold));
                         assert_eq!(sets[0], sets[1], "{count} {name} at {point}, threshold {threshold}");

@@ -16,9 +16,14 @@ use lightcuts_kernel::surface::{Surface, surface_at};
 use lightcuts_kernel::texture::{sample_texture, surface_point};
 use lightcuts_world::World;
 use lightcuts_world::bvh::LANES;
+use std::ops::Range;
 
 /// Camera rays that look together: so many as shadow rays to one VPL go together.
 pub(crate) const TOGETHER: usize = 32;
+
+/// So many VPLs are tested at each of some neighbours rather than have each go down the tree alone; or for so many that are certain one.
+const MOST_TESTED: u64 = 256;
+const CERTAIN_PER_TESTED: u64 = 4;
 
 /// What a ray hit.
 #[derive(Debug, Clone, Copy)]
@@ -128,25 +133,21 @@ impl<'a> Shader<'a> {
     }
 
     fn gather_together(&mut self, vpls: &VplLighting<'_>, neighbours: &[usize]) {
-        let mut places = Vec::with_capacity(neighbours.len());
-        let mut receivers = Vec::with_capacity(neighbours.len());
-        let (mut all_visits, mut ends) = (Vec::with_capacity(neighbours.len()), Vec::with_capacity(neighbours.len()));
-        self.candidates_together.clear();
+        let (mut places, mut receivers) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
         for &place in neighbours {
             let found = self.firsts[place].filter(|found| self.material(found).local != 0.0);
             let Some(found) = found else { continue };
             places.push(place);
             receivers.push(self.receiver(&found));
-            all_visits.push(choose(vpls, &self.tracer, found.surface.point, &mut self.candidates_together));
-            ends.push(self.candidates_together.len());
         }
-        let list = |k: usize| match vpls.strategy {
+        let choices = choose_together(vpls, &self.tracer, &receivers, &mut self.candidates_together);
+        let list = |(own, _): &(Range<usize>, TreeVisits)| match vpls.strategy {
             Strategy::All => &self.candidates[..],
-            _ => &self.candidates_together[if k == 0 { 0 } else { ends[k - 1] }..ends[k]],
+            _ => &self.candidates_together[own.clone()],
         };
-        let lists: Vec<&[Candidates]> = (0..places.len()).map(list).collect();
+        let lists: Vec<&[Candidates]> = choices.iter().map(list).collect();
         let gathered = evaluate_together(&self.tracer, &blocks(vpls, self.walls), &lists, threshold(vpls), &receivers);
-        for ((place, gathered), visits) in places.into_iter().zip(gathered).zip(all_visits) {
+        for ((place, gathered), (_, visits)) in places.into_iter().zip(gathered).zip(choices) {
             self.gathered[place] = Some((gathered, visits));
         }
     }
@@ -204,7 +205,7 @@ impl<'a> Shader<'a> {
             if vpls.strategy != Strategy::All {
                 self.candidates.clear();
             }
-            let visits = choose(vpls, &self.tracer, surface.point, &mut self.candidates);
+            let visits = choose(vpls, &self.tracer, (surface.point, surface.point), &mut self.candidates);
             let receiver = self.receiver(found);
             (evaluate(&self.tracer, &blocks(vpls, self.walls), &self.candidates, threshold(vpls), &receiver), visits)
         });
@@ -230,14 +231,49 @@ fn threshold(vpls: &VplLighting<'_>) -> Option<f32> {
     (vpls.strategy != Strategy::All).then_some(vpls.threshold)
 }
 
-/// Appends the VPLs that may light a point; none where all do.
-fn choose(vpls: &VplLighting<'_>, tracer: &Tracer<'_>, point: Vec3, candidates: &mut Vec<Candidates>) -> TreeVisits {
+/// Appends the VPLs that may light points of a box; none where all do.
+fn choose(
+    vpls: &VplLighting<'_>,
+    tracer: &Tracer<'_>,
+    points: (Vec3, Vec3),
+    candidates: &mut Vec<Candidates>,
+) -> TreeVisits {
     match vpls.strategy {
         Strategy::All => TreeVisits::default(),
         // `stochastic` is of the physical model; settings with it are not rendered here.
         Strategy::Lightcuts | Strategy::Stochastic | Strategy::Auto => {
-            select(vpls.tree, tracer.avx2, point, vpls.threshold, candidates)
+            select(vpls.tree, tracer.avx2, points, vpls.threshold, candidates)
         }
         Strategy::LightcutsExhaustive => select_exhaustively(vpls.tree, candidates),
     }
+}
+
+/// The same for neighbours: of each, where among the candidates its own are, and what that took. They go down the tree together if that
+/// leaves few VPLs to be tested at each.
+fn choose_together(
+    vpls: &VplLighting<'_>,
+    tracer: &Tracer<'_>,
+    at: &[Receiver],
+    candidates: &mut Vec<Candidates>,
+) -> Vec<(Range<usize>, TreeVisits)> {
+    candidates.clear();
+    let points = || at.iter().map(|at| at.point);
+    let corners = (points().fold(Vec3::INFINITY, Vec3::min), points().fold(Vec3::NEG_INFINITY, Vec3::max));
+    let common = choose(vpls, tracer, corners, candidates);
+    let mut choices = vec![(0..candidates.len(), TreeVisits { nodes: 0, ..common }); at.len()];
+    let certain =
+        candidates.iter().filter(|some| some.certain).map(|some| u64::from(some.lanes.count_ones())).sum::<u64>();
+    let most_tested = MOST_TESTED.max(certain / CERTAIN_PER_TESTED);
+    if common.lights > most_tested && vpls.strategy != Strategy::LightcutsExhaustive {
+        candidates.clear();
+        for (at, (own, visits)) in at.iter().zip(&mut choices) {
+            own.start = candidates.len();
+            *visits = choose(vpls, tracer, (at.point, at.point), candidates);
+            own.end = candidates.len();
+        }
+    }
+    if let Some((_, first)) = choices.first_mut() {
+        first.nodes += common.nodes;
+    }
+    choices
 }

@@ -18,13 +18,12 @@ use std::arch::x86_64::{
     _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
 
-/// Decides for every cluster of a node; twin of `kernel::light_tree::decide`, same bits.
+/// Decides for every cluster of a node; twin of `kernel::light_tree::decide_in`, same bits.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-pub(super) fn decide_all(node: &LightNode, point: Vec3, threshold: f32) -> Decisions {
+pub(super) fn decide_all(node: &LightNode, (lower, upper): (Vec3, Vec3), threshold: f32) -> Decisions {
     let zero = _mm256_setzero_ps();
     let sign_bit = _mm256_set1_ps(-0.0);
-    let point = splat3(point);
-    let (from_upper, from_lower) = (sub(point, load3(&node.upper)), sub(point, load3(&node.lower)));
+    let (from_upper, from_lower) = (sub(splat3(lower), load3(&node.upper)), sub(splat3(upper), load3(&node.lower)));
     let (mut near_sq, mut far_sq, mut least, mut greatest) = (zero, zero, zero, zero);
     for axis in 0..3 {
         let (u, l) = (from_upper[axis], from_lower[axis]);

@@ -5,7 +5,7 @@ use crate::light_node::{LANES, LightNode, VplBlock};
 use crate::light_tree::{LightTree, Nodes, PackedTree};
 use crate::stats::TreeVisits;
 use glam::Vec3;
-use lightcuts_kernel::light_tree::{Decision, decide, is_relevant};
+use lightcuts_kernel::light_tree::{Decision, decide_in, is_relevant};
 use lightcuts_kernel::packed_tree::unpack_cluster;
 use lightcuts_kernel::phong::{phong_vpl, vpl_incidence};
 use lightcuts_kernel::ray::shadow_ray;
@@ -56,18 +56,18 @@ pub(crate) struct Decisions {
     pub(crate) descend: u32,
 }
 
-/// Appends the VPLs that may light a point, in tree order. Those whose relevance reaches the threshold, certain or when
-/// tested, are exactly the ones that testing every VPL would find.
+/// Appends the VPLs that may light points of a box (its lower and its upper corner), in tree order. Those whose relevance at one of
+/// them reaches the threshold, certain or when tested, are exactly the ones that testing every VPL there would find.
 pub(crate) fn select(
     tree: &LightTree,
     avx2: bool,
-    point: Vec3,
+    points: (Vec3, Vec3),
     threshold: f32,
     candidates: &mut Vec<Candidates>,
 ) -> TreeVisits {
     match &tree.nodes {
-        Nodes::Wide(nodes) => select_wide(tree, nodes, avx2, point, threshold, candidates),
-        Nodes::Packed(packed) => select_packed(tree, packed, point, threshold, candidates),
+        Nodes::Wide(nodes) => select_wide(tree, nodes, avx2, points, threshold, candidates),
+        Nodes::Packed(packed) => select_packed(tree, packed, points, threshold, candidates),
     }
 }
 
@@ -76,7 +76,7 @@ fn select_wide(
     tree: &LightTree,
     nodes: &[LightNode],
     avx2: bool,
-    point: Vec3,
+    points: (Vec3, Vec3),
     threshold: f32,
     candidates: &mut Vec<Candidates>,
 ) -> TreeVisits {
@@ -87,7 +87,7 @@ fn select_wide(
     // Nodes on the way down, each with what is left to do there.
     let mut stack = [(0_u32, Decisions::default()); MAX_LEVELS];
     let mut size = 0;
-    let (mut index, mut left) = (0, decide_all(&nodes[0], avx2, point, threshold, &mut visits));
+    let (mut index, mut left) = (0, decide_all(&nodes[0], avx2, points, threshold, &mut visits));
     loop {
         let node = &nodes[index as usize];
         if node.node[0] == 0 {
@@ -114,7 +114,7 @@ fn select_wide(
         if child != 0 {
             stack[size] = (index, Decisions { accept: left.accept & pending, descend: left.descend & pending });
             size += 1;
-            (index, left) = (child, decide_all(&nodes[child as usize], avx2, point, threshold, &mut visits));
+            (index, left) = (child, decide_all(&nodes[child as usize], avx2, points, threshold, &mut visits));
         } else if size > 0 {
             size -= 1;
             (index, left) = stack[size];
@@ -129,7 +129,7 @@ fn select_wide(
 fn select_packed(
     tree: &LightTree,
     packed: &PackedTree,
-    point: Vec3,
+    points: (Vec3, Vec3),
     threshold: f32,
     candidates: &mut Vec<Candidates>,
 ) -> TreeVisits {
@@ -139,7 +139,7 @@ fn select_packed(
     let (mut index, mut first, mut span) = (1_u32, 0, packed.leaves() as u32);
     while first < count {
         visits.nodes += 1;
-        let decision = decide(&unpack_cluster(&packed.nodes[index as usize]), point, threshold);
+        let decision = decide_in(&unpack_cluster(&packed.nodes[index as usize]), points, threshold);
         if decision == Decision::Descend && span > 1 {
             (index, span) = (2 * index, span / 2);
             continue;
@@ -179,15 +179,21 @@ fn take_blocks(node: &LightNode, decisions: Decisions, candidates: &mut Vec<Cand
 /// Decides for every cluster of a node.
 #[allow(unsafe_code)]
 #[inline]
-fn decide_all(node: &LightNode, avx2: bool, point: Vec3, threshold: f32, visits: &mut TreeVisits) -> Decisions {
+fn decide_all(
+    node: &LightNode,
+    avx2: bool,
+    points: (Vec3, Vec3),
+    threshold: f32,
+    visits: &mut TreeVisits,
+) -> Decisions {
     visits.nodes += u64::from(node.count);
     #[cfg(target_arch = "x86_64")]
     if avx2 {
         // SAFETY: `avx2` is set only where the machine has the feature.
-        return unsafe { super::avx2_gather::decide_all(node, point, threshold) };
+        return unsafe { super::avx2_gather::decide_all(node, points, threshold) };
     }
     (0..node.count as usize).fold(Decisions::default(), |mut decisions, lane| {
-        match decide(&node.cluster(lane), point, threshold) {
+        match decide_in(&node.cluster(lane), points, threshold) {
             Decision::Reject => {}
             Decision::Accept => decisions.accept |= 1 << lane,
             Decision::Descend => decisions.descend |= 1 << lane,

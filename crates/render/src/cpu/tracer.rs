@@ -271,7 +271,7 @@ mod tests {
                     let lists = receivers.each_ref().map(|at| {
                         let mut list = Vec::new();
                         if let Some(threshold) = threshold {
-                            select(&tree, tracer.avx2, at.point, threshold, &mut list);
+                            select(&tree, tracer.avx2, (at.point, at.point), threshold, &mut list);
                         } else {
                             list.extend(tree.every_block(true));
                         }
