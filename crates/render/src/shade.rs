@@ -21,7 +21,7 @@ use std::ops::Range;
 /// Camera rays that look together: so many as shadow rays to one VPL go together.
 pub(crate) const TOGETHER: usize = 32;
 
-/// So many VPLs are tested at each of some neighbours rather than have each go down the tree alone; or for so many that are certain one.
+/// Neighbours choose VPLs together, if then so many at most are to be tested at each of them, or one for so many that need no test.
 const MOST_TESTED: u64 = 256;
 const CERTAIN_PER_TESTED: u64 = 4;
 
@@ -248,8 +248,8 @@ fn choose(
     }
 }
 
-/// The same for neighbours: of each, where among the candidates its own are, and what that took. They go down the tree together if that
-/// leaves few VPLs to be tested at each.
+/// The same for neighbours: of each, where among the candidates its own are, and what that took. They go down the tree together, and
+/// alone only if that leaves too many VPLs to be tested.
 fn choose_together(
     vpls: &VplLighting<'_>,
     tracer: &Tracer<'_>,
@@ -257,13 +257,15 @@ fn choose_together(
     candidates: &mut Vec<Candidates>,
 ) -> Vec<(Range<usize>, TreeVisits)> {
     candidates.clear();
+    if at.is_empty() {
+        return Vec::new();
+    }
     let points = || at.iter().map(|at| at.point);
     let corners = (points().fold(Vec3::INFINITY, Vec3::min), points().fold(Vec3::NEG_INFINITY, Vec3::max));
     let common = choose(vpls, tracer, corners, candidates);
     let mut choices = vec![(0..candidates.len(), TreeVisits { nodes: 0, ..common }); at.len()];
-    let certain =
-        candidates.iter().filter(|some| some.certain).map(|some| u64::from(some.lanes.count_ones())).sum::<u64>();
-    let most_tested = MOST_TESTED.max(certain / CERTAIN_PER_TESTED);
+    let certain: u32 = candidates.iter().filter(|some| some.certain).map(|some| some.lanes.count_ones()).sum();
+    let most_tested = MOST_TESTED.max(u64::from(certain) / CERTAIN_PER_TESTED);
     if common.lights > most_tested && vpls.strategy != Strategy::LightcutsExhaustive {
         candidates.clear();
         for (at, (own, visits)) in at.iter().zip(&mut choices) {
@@ -272,8 +274,6 @@ fn choose_together(
             own.end = candidates.len();
         }
     }
-    if let Some((_, first)) = choices.first_mut() {
-        first.nodes += common.nodes;
-    }
+    choices[0].1.nodes += common.nodes;
     choices
 }

@@ -171,9 +171,10 @@ fn counted(counts: __m256i, mask: __m256) -> __m256i {
     _mm256_sub_epi32(counts, _mm256_castps_si256(mask))
 }
 
-/// Twin of [`evaluate`] for up to 32 points, each with its candidates in the order of their blocks: one VPL at a time for all points
-/// that have it, whose shadow rays go much the same way.
+/// Twin of the plain `evaluate_together`, for up to 32 points whose candidates are in the order of their blocks: one VPL at a time for all
+/// points that have it, whose shadow rays go much the same way.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+#[allow(clippy::large_stack_arrays)] // two dozen KiB, of which little is written
 pub(super) fn evaluate_together(
     tracer: &Tracer<'_>,
     blocks: &Blocks<'_>,

@@ -316,36 +316,30 @@ impl SamplePass<'_> {
         let mut sampled: Vec<Sampled> = starts.into_iter().zip(hits).map(&mut sample).collect();
         technique.gather(self, &mut pending, &mut sampled, &mut result.counts);
         for ((&(k, place), shift), sampled) in pixels.iter().zip(shifts).zip(&sampled) {
-            self.add(k, place, shift, sampled, technique, result);
+            result.add(k, place, shift, sampled, technique);
         }
     }
+}
 
-    /// Adds a sample to what its tile yields.
-    fn add(
-        &self,
-        k: usize,
-        (i, j): (u32, u32),
-        shift: [f32; 2],
-        sampled: &Sampled,
-        technique: Technique,
-        result: &mut SampledTile,
-    ) {
+impl SampledTile {
+    /// Adds a sample of a pixel, which has its place.
+    fn add(&mut self, k: usize, (i, j): (u32, u32), shift: [f32; 2], sampled: &Sampled, technique: Technique) {
         let Sampled { radiance, first, cut, bound } = *sampled;
-        result.all.add(i, j, shift, radiance.all);
-        result.indirect.add(i, j, shift, radiance.indirect);
+        self.all.add(i, j, shift, radiance.all);
+        self.indirect.add(i, j, shift, radiance.indirect);
         let emitted = f64::from(light_power(radiance.emitted));
         let reflected = f64::from(light_power(radiance.all)) - emitted;
         // Lights in the picture are the same to all techniques, and pixels on their edges vary more than all others.
-        let is_probe = result.task.extent.samples() == 0;
+        let is_probe = self.task.extent.samples() == 0;
         let brightness = if is_probe { reflected } else { reflected + emitted } / 3.0;
-        result.moments[k].add(&Moments { samples: 1, sum: brightness, sum_sq: brightness * brightness });
+        self.moments[k].add(&Moments { samples: 1, sum: brightness, sum_sq: brightness * brightness });
         let cuts = u32::from(technique.uses_vpls());
         let gathered = f64::from(cuts) * reflected;
         let mut sums = PixelSums { samples: 1, reflected, emitted, cut, bound, cuts, gathered, ..PixelSums::default() };
         if let Some(first) = &first {
             sums.see(first);
         }
-        result.pixels[k].add(&sums);
+        self.pixels[k].add(&sums);
     }
 }
 
