@@ -106,7 +106,8 @@ fn gather_cut(@builtin(global_invocation_id) id: vec3<u32>) {
     let end = min(params.first_block + params.block_count, (params.total_vpls + BLOCK_SIZE - 1u) / BLOCK_SIZE);
     while (block < end) {
         visited += 1u;
-        let decision = decide(unpack_cluster(light_nodes[node]), surface.point, params.threshold);
+        let cluster = unpack_cluster(light_nodes[node]);
+        let decision = decide(cluster, surface.point, surface.point, params.threshold);
         if (decision == DESCEND && span > 1u) {
             node = 2u * node;
             span /= 2u;

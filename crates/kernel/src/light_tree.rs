@@ -35,7 +35,7 @@ pub fn is_relevant(vpl: &Vpl, intensity: f32, point: Vec3, threshold: f32) -> bo
     (-vpl.direction.dot(to_light)).max(0.0) * intensity >= threshold * (dist_sq * dist_sq.sqrt())
 }
 
-/// Bounds on the relevance of a cluster's VPLs for a point, up to [`BOUND_MARGIN`], as fractions without the division:
+/// Bounds on the relevance of a cluster's VPLs for points, up to [`BOUND_MARGIN`], as fractions without the division:
 /// flux is intensity times cosine at the light times a distance, volume the cube of distance that goes with it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RelevanceBounds {
@@ -49,12 +49,7 @@ pub struct RelevanceBounds {
     pub least_volume: f32,
 }
 
-/// Bounds on the relevance of a cluster for a point.
-pub fn relevance_bounds(cluster: &LightCluster, point: Vec3) -> RelevanceBounds {
-    relevance_bounds_in(cluster, (point, point))
-}
-
-/// Bounds on the relevance of a cluster for all points of a box, given by its lower and its upper corner.
+/// Bounds on the relevance of a cluster for all points of a box, given by its corners; for one point both are that.
 ///
 /// With v the vectors from the cluster's positions to the points, a box, and a the angle between v and the cone's axis:
 /// |v| cos a = v . axis lies between its values at two corners, |v| between the distances of the nearest and the
@@ -62,7 +57,7 @@ pub fn relevance_bounds(cluster: &LightCluster, point: Vec3) -> RelevanceBounds 
 /// the light is at most cos(a - s) <= cos a cos s + sin s and at least cos(a + s) >= cos a cos s - sin s (Walter et al.
 /// 2005, section 5.3; sin a is bounded by 1, which costs little where a decision is near, at grazing angles, and saves
 /// two square roots).
-pub fn relevance_bounds_in(cluster: &LightCluster, (lower, upper): (Vec3, Vec3)) -> RelevanceBounds {
+pub fn relevance_bounds(cluster: &LightCluster, lower: Vec3, upper: Vec3) -> RelevanceBounds {
     let (from_upper, from_lower) = (lower - cluster.upper, upper - cluster.lower);
     let outside = from_upper.max(-from_lower).max(Vec3::ZERO);
     let farthest = from_lower.abs().max(from_upper.abs());
@@ -92,14 +87,9 @@ pub enum Decision {
     Descend,
 }
 
-/// Compares a cluster's bounds with a threshold, leaving [`BOUND_MARGIN`] to the exact test.
-pub fn decide(cluster: &LightCluster, point: Vec3, threshold: f32) -> Decision {
-    decide_in(cluster, (point, point), threshold)
-}
-
-/// [`decide`] for all points of a box, given by its lower and its upper corner.
-pub fn decide_in(cluster: &LightCluster, points: (Vec3, Vec3), threshold: f32) -> Decision {
-    let bounds = relevance_bounds_in(cluster, points);
+/// Compares a cluster's bounds with a threshold, leaving [`BOUND_MARGIN`] to the exact test: for all points of a box.
+pub fn decide(cluster: &LightCluster, lower: Vec3, upper: Vec3, threshold: f32) -> Decision {
+    let bounds = relevance_bounds(cluster, lower, upper);
     if bounds.greatest_flux < threshold * (1.0 - BOUND_MARGIN) * bounds.least_volume {
         Decision::Reject
     } else if bounds.least_flux >= threshold * (1.0 + BOUND_MARGIN) * bounds.greatest_volume && bounds.least_flux > 0.0

@@ -26,9 +26,9 @@ fn is_relevant(vpl: Vpl, intensity: f32, point: vec3<f32>, threshold: f32) -> bo
     return max(-dot3(vpl.direction, towards), 0.0) * intensity >= threshold * (dist_sq * sqrt(dist_sq));
 }
 
-fn relevance_bounds(cluster: LightCluster, point: vec3<f32>) -> RelevanceBounds {
-    let from_upper = point - cluster.upper;
-    let from_lower = point - cluster.lower;
+fn relevance_bounds(cluster: LightCluster, lower: vec3<f32>, upper: vec3<f32>) -> RelevanceBounds {
+    let from_upper = lower - cluster.upper;
+    let from_lower = upper - cluster.lower;
     let outside = max(max(from_upper, -from_lower), vec3<f32>(0.0));
     let farthest = max(abs(from_lower), abs(from_upper));
     let near_sq = dot3(outside, outside);
@@ -49,8 +49,8 @@ fn relevance_bounds(cluster: LightCluster, point: vec3<f32>) -> RelevanceBounds 
     );
 }
 
-fn decide(cluster: LightCluster, point: vec3<f32>, threshold: f32) -> u32 {
-    let bounds = relevance_bounds(cluster, point);
+fn decide(cluster: LightCluster, lower: vec3<f32>, upper: vec3<f32>, threshold: f32) -> u32 {
+    let bounds = relevance_bounds(cluster, lower, upper);
     if (bounds.greatest_flux < threshold * (1.0 - BOUND_MARGIN) * bounds.least_volume) {
         return REJECT;
     }

@@ -338,7 +338,7 @@ pub(crate) mod tests {
 
     #[test]
     fn the_bounds_hold_for_ten_thousand_points_and_every_cluster() {
-        use lightcuts_kernel::light_tree::{BOUND_MARGIN, relevance_bounds_in};
+        use lightcuts_kernel::light_tree::{BOUND_MARGIN, relevance_bounds};
         let tree = LightTree::build(&scattered(300), TreeLayout::Wide);
         let clusters = clusters(&tree);
         let mut decided = 0;
@@ -348,7 +348,7 @@ pub(crate) mod tests {
             // Every other time as one of a box.
             let reach = Vec3::new(c, a, b) * if sample % 2 == 0 { 0.0 } else { 100.0 * d * d * d };
             for (part, vpls) in &clusters {
-                let bounds = relevance_bounds_in(&part.cluster, (point - reach, point + reach * d));
+                let bounds = relevance_bounds(&part.cluster, point - reach, point + reach * d);
                 let least = (bounds.least_flux / bounds.greatest_volume).max(0.0);
                 let greatest = bounds.greatest_flux / bounds.least_volume;
                 decided += u32::from(least > 0.0 || greatest == 0.0);

@@ -18,7 +18,7 @@ use std::arch::x86_64::{
     _mm256_setzero_ps, _mm256_sqrt_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
 
-/// Decides for every cluster of a node; twin of `kernel::light_tree::decide_in`, same bits.
+/// Decides for every cluster of a node; twin of `kernel::light_tree::decide`, same bits.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn decide_all(node: &LightNode, (lower, upper): (Vec3, Vec3), threshold: f32) -> Decisions {
     let zero = _mm256_setzero_ps();

@@ -5,7 +5,7 @@ use crate::light_node::{LANES, LightNode, VplBlock};
 use crate::light_tree::{LightTree, Nodes, PackedTree};
 use crate::stats::TreeVisits;
 use glam::Vec3;
-use lightcuts_kernel::light_tree::{Decision, decide_in, is_relevant};
+use lightcuts_kernel::light_tree::{Decision, decide, is_relevant};
 use lightcuts_kernel::packed_tree::unpack_cluster;
 use lightcuts_kernel::phong::{phong_vpl, vpl_incidence};
 use lightcuts_kernel::ray::shadow_ray;
@@ -139,7 +139,7 @@ fn select_packed(
     let (mut index, mut first, mut span) = (1_u32, 0, packed.leaves() as u32);
     while first < count {
         visits.nodes += 1;
-        let decision = decide_in(&unpack_cluster(&packed.nodes[index as usize]), points, threshold);
+        let decision = decide(&unpack_cluster(&packed.nodes[index as usize]), points.0, points.1, threshold);
         if decision == Decision::Descend && span > 1 {
             (index, span) = (2 * index, span / 2);
             continue;
@@ -193,7 +193,7 @@ fn decide_all(
         return unsafe { super::avx2_gather::decide_all(node, points, threshold) };
     }
     (0..node.count as usize).fold(Decisions::default(), |mut decisions, lane| {
-        match decide_in(&node.cluster(lane), points, threshold) {
+        match decide(&node.cluster(lane), points.0, points.1, threshold) {
             Decision::Reject => {}
             Decision::Accept => decisions.accept |= 1 << lane,
             Decision::Descend => decisions.descend |= 1 << lane,

@@ -47,8 +47,14 @@ pub(crate) const ROWS: [Row; 13] = [
         c.put(PhotonStart { ray: Ray { t_max: f32::MAX, ..start.ray }, ..start });
     }),
     twin("is_relevant", |c| c.put(is_relevant(&c.vpl(), c.positive(), c.point(), c.take(|| threshold(c))))),
-    twin("relevance_bounds", |c| c.put(relevance_bounds(&c.cluster(), c.point()))),
-    twin("decide", |c| c.put(decide(&c.cluster(), c.point(), c.take(|| threshold(c))))),
+    twin("relevance_bounds", |c| {
+        let (cluster, (lower, upper)) = (c.cluster(), corners(c));
+        c.put(relevance_bounds(&cluster, lower, upper));
+    }),
+    twin("decide", |c| {
+        let (cluster, (lower, upper)) = (c.cluster(), corners(c));
+        c.put(decide(&cluster, lower, upper, c.take(|| threshold(c))));
+    }),
 ];
 
 fn put_incidence(c: &Case<'_>, at: Option<impl Words + Copy>) {
@@ -56,6 +62,12 @@ fn put_incidence(c: &Case<'_>, at: Option<impl Words + Copy>) {
     if let Some(at) = at {
         c.put(at);
     }
+}
+
+/// Of a box around points, or of one point.
+fn corners(c: &Case<'_>) -> (Vec3, Vec3) {
+    let lower = c.point();
+    (lower, c.take(|| lower.max(c.raw_point())))
 }
 
 /// A light that neither faces away nor is faced away from.
