@@ -55,8 +55,7 @@ impl Job<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cpu::{CpuDevice, Simd, select, select_exhaustively};
-    use crate::light_tree::tests::chosen;
+    use crate::cpu::{CpuDevice, Simd, chosen, select, select_exhaustively};
     use crate::light_tree::{LightTree, TreeLayout};
     use crate::{Options, Settings, Stations, Unwatched};
     use glam::Vec3;

@@ -79,8 +79,8 @@ fn inner_node(left: &PackedLightNode, right: &PackedLightNode) -> PackedLightNod
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cpu::{Simd, select, select_exhaustively};
-    use crate::light_tree::tests::{chosen, scattered};
+    use crate::cpu::{Simd, chosen, select, select_exhaustively};
+    use crate::light_tree::tests::scattered;
     use crate::light_tree::{LightTree, TreeLayout};
     use lightcuts_kernel::rng::random4;
 

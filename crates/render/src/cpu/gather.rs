@@ -269,3 +269,45 @@ pub(crate) fn evaluate_together(
     let each = |(at, candidates): (&Receiver, &&[Candidates])| evaluate(tracer, blocks, candidates, threshold, at);
     at.iter().zip(candidates).map(each).collect()
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::cpu::Simd;
+    use crate::light_tree::TreeLayout;
+    use crate::light_tree::tests::scattered;
+    use lightcuts_kernel::rng::random4;
+
+    /// The chosen lanes of each block that has any.
+    pub(crate) fn chosen(tree: &LightTree, candidates: &[Candidates], point: Vec3, threshold: f32) -> Vec<(u32, u32)> {
+        let lanes = |c: &Candidates| {
+            let tested = relevant_lanes(&tree.blocks[c.block as usize], point, threshold);
+            u32::from(c.lanes) & if c.certain { u32::MAX } else { tested }
+        };
+        candidates.iter().map(|c| (c.block, lanes(c))).filter(|&(_, lanes)| lanes != 0).collect()
+    }
+
+    #[test]
+    fn the_tree_selects_what_testing_every_vpl_selects() {
+        for count in [1, 9, 290, 3000] {
+            let tree = LightTree::build(&scattered(count), TreeLayout::Wide);
+            let mut visited = 0;
+            for sample in 0..500 {
+                let [a, b, c, d] = random4(sample, 6, 0, 3);
+                let point = (Vec3::new(a, b, c) - 0.5) * 400.0;
+                let threshold = if sample % 10 == 0 { 0.0 } else { 10.0_f32.powf(-8.0 + 4.0 * d) };
+                let (mut found, mut expected) = (Vec::new(), Vec::new());
+                let visits = select(&tree, Simd::Auto.has_avx2(), (point, point), threshold, &mut found);
+                let mut plain = Vec::new();
+                assert_eq!(select(&tree, false, (point, point), threshold, &mut plain), visits);
+                assert_eq!(plain, found);
+                select_exhaustively(&tree, &mut expected);
+                let (found, expected) =
+                    (chosen(&tree, &found, point, threshold), chosen(&tree, &expected, point, threshold));
+                assert_eq!(found, expected, "{count} VPLs at {point}, threshold {threshold}");
+                visited += visits.nodes + visits.lights;
+            }
+            println!("{count} VPLs: {:.1} visits per hit", visited as f64 / 500.0);
+        }
+    }
+}

@@ -28,7 +28,7 @@ mod walls;
 
 pub use device::{CpuDevice, processor_name};
 #[cfg(test)]
-pub(crate) use gather::relevant_lanes;
+pub(crate) use gather::tests::chosen;
 pub(crate) use gather::{
     Blocks, Candidates, Gathered, Receiver, evaluate, evaluate_together, select, select_exhaustively,
 };
