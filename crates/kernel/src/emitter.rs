@@ -49,8 +49,8 @@ pub struct Emitter {
     pub primitive: u32,
     /// Image of the radiance, or [`crate::ray::NONE`].
     pub image: u32,
-    /// Unused.
-    pub padding: u32,
+    /// How far rays begin and end off a surface, in scene units; see [`crate::rounding`].
+    pub slack: f32,
 }
 
 /// Light from one direction.

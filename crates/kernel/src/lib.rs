@@ -29,6 +29,7 @@ pub mod photon_gather;
 pub mod power;
 pub mod ray;
 pub mod rng;
+pub mod rounding;
 pub mod rules;
 pub mod sampling;
 pub mod scatter;
@@ -41,7 +42,7 @@ pub mod wgsl;
 pub use rules::Rules;
 
 /// The modules whose WGSL twins are still to be written, by file stem.
-pub const TWINS_TO_COME: [&str; 13] = [
+pub const TWINS_TO_COME: [&str; 14] = [
     "bsdf",
     "cluster",
     "dielectric",
@@ -53,6 +54,7 @@ pub const TWINS_TO_COME: [&str; 13] = [
     "ggx",
     "lens",
     "mip",
+    "rounding",
     "scatter",
     "virtual_light",
 ];

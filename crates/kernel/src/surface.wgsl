@@ -8,7 +8,7 @@ struct Primitive {
 struct TriangleCorners {
     normals: array<f32, 9>,
     texture_coordinates: array<f32, 6>,
-    padding: f32,
+    slack: f32,
 }
 
 struct Surface {

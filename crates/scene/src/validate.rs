@@ -1,7 +1,7 @@
 //! What must hold of a scene before it is rendered, said once for every importer and for scenes built in code.
 
 use crate::{LightKind, MeshDesc, Projection, SceneDesc, ShapeDesc, Transform};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::fmt;
 
 /// Largest magnitude of a coordinate or length, in scene units: its cube still fits a 32-bit float.
@@ -164,8 +164,8 @@ impl Check {
         }
     }
 
-    pub(crate) fn point(&mut self, field: &'static str, value: Vec3) {
-        if !value.to_array().iter().all(|c| c.abs() <= MAX_COORDINATE) {
+    pub(crate) fn point(&mut self, field: &'static str, value: impl Into<DVec3> + fmt::Display + Copy) {
+        if !value.into().to_array().iter().all(|c| c.abs() <= f64::from(MAX_COORDINATE)) {
             self.issue(field, format!("is {value}; expected coordinates of at most {MAX_COORDINATE:e} in magnitude"));
         }
     }

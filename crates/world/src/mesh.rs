@@ -1,6 +1,6 @@
 //! Meshes placed in the scene.
 
-use glam::{Affine3A, Mat3, Quat, Vec3};
+use glam::{DAffine3, Mat3, Quat, Vec3};
 use lightcuts_kernel::ray::normalize_or_zero;
 use lightcuts_kernel::surface::TriangleCorners;
 use lightcuts_scene::{MeshDesc, MeshTriangle, Transform};
@@ -51,20 +51,20 @@ impl Place for Placement {
 
 /// Any affine map that keeps volumes.
 pub(crate) struct AffinePlacement {
-    to_scene: Affine3A,
+    to_scene: DAffine3,
     /// Normals go with the transposed inverse.
     of_normals: Mat3,
 }
 
 impl AffinePlacement {
-    pub(crate) fn new(to_scene: Affine3A) -> Self {
-        Self { to_scene, of_normals: Mat3::from(to_scene.matrix3).inverse().transpose() }
+    pub(crate) fn new(to_scene: DAffine3) -> Self {
+        Self { to_scene, of_normals: to_scene.matrix3.inverse().transpose().as_mat3() }
     }
 }
 
 impl Place for AffinePlacement {
     fn point(&self, p: Vec3) -> Vec3 {
-        self.to_scene.transform_point3(p)
+        self.to_scene.transform_point3(p.as_dvec3()).as_vec3()
     }
 
     fn normal(&self, n: Vec3) -> Vec3 {
@@ -96,7 +96,7 @@ pub(crate) fn place_triangle(
     };
     let texture_coordinates =
         triangle.texture_coordinates.map_or([[0.0; 2]; 3], |uv| uv.map(|i| mesh.texture_coordinates[i as usize]));
-    (points, TriangleCorners { normals, texture_coordinates, padding: 0.0 })
+    (points, TriangleCorners { normals, texture_coordinates, slack: 0.0 })
 }
 
 #[cfg(test)]
@@ -130,7 +130,7 @@ mod tests {
         let placement = Placement::new(&Transform::default());
         let (_, smooth) = place_triangle(&mesh, &triangle, &placement, true);
         assert_eq!(smooth.normals, [Vec3::Z, Vec3::X, Vec3::Z]);
-        let turned = AffinePlacement::new(Affine3A::from_rotation_z(std::f32::consts::FRAC_PI_2));
+        let turned = AffinePlacement::new(DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_2));
         let (points, corners) = place_triangle(&mesh, &triangle, &turned, true);
         assert!((points[1] - Vec3::Y).length() < 1e-6 && (corners.normals[1] - Vec3::Y).length() < 1e-6);
         let (_, flat) = place_triangle(&mesh, &triangle, &placement, false);

@@ -102,6 +102,25 @@ impl Builder {
         });
     }
 
+    /// The boxes anew, of primitives that were changed.
+    pub(crate) fn fit_boxes(&mut self) {
+        for (primitive, bounds) in self.primitives.iter().zip(&mut self.boxes) {
+            let index = primitive.index as usize;
+            match primitive.kind {
+                TRIANGLE => {
+                    let [a, b, c] = self.points[index];
+                    *bounds = (a.min(b).min(c), a.max(b).max(c));
+                }
+                SQUARE => {
+                    let square = &self.squares[index];
+                    let reach = (square.across * square.half_width).abs() + (square.along * square.half_height).abs();
+                    *bounds = (square.center - reach, square.center + reach);
+                }
+                _ => {}
+            }
+        }
+    }
+
     fn push(&mut self, kind: u32, index: usize, material: u32, bounds: (Vec3, Vec3)) -> u32 {
         self.primitives.push(Primitive { kind, index: index as u32, object: self.objects, material });
         self.boxes.push(bounds);

@@ -40,7 +40,7 @@ impl PhysicalInfo {
         for material in &scene.materials {
             *materials.entry(material_kind(&material.scattering)).or_default() += 1;
         }
-        let (lower, upper) = world.bounds;
+        let (lower, upper) = world.scene_bounds();
         Self {
             name: scene.name.clone(),
             lights,
@@ -52,7 +52,7 @@ impl PhysicalInfo {
             triangles: world.shapes.corners.len(),
             spheres: world.shapes.spheres.len(),
             squares: world.shapes.squares.len(),
-            bounds: (!world.shapes.primitives.is_empty()).then(|| [lower.into(), upper.into()]),
+            bounds: (!world.shapes.primitives.is_empty()).then(|| [lower.as_vec3().into(), upper.as_vec3().into()]),
             settings: Settings::for_physical(),
             warnings: imported.warnings.iter().map(ToString::to_string).collect(),
             files: imported.files.iter().map(|path| path.display().to_string()).collect(),

@@ -2,8 +2,8 @@
 
 use super::document::Table;
 use super::reader::Reader;
-use super::value::{NUMBER, VECTOR};
-use glam::Vec3;
+use super::value::{NUMBER, POSITION, VECTOR};
+use glam::{DVec3, Vec3};
 use lightcuts_scene::physical::{PhysicalCamera, View};
 
 /// What a camera looks like, to follow the word "expected".
@@ -15,9 +15,9 @@ const KEYS: [&str; 10] =
 pub(super) fn camera(reader: &mut Reader<'_>, table: Table<'_>) -> Option<PhysicalCamera> {
     table.check_keys(reader, "the camera", &[&KEYS])?;
     let default = PhysicalCamera::default();
-    let position = reader.required(table, "position", VECTOR)?;
+    let position = reader.required(table, "position", POSITION)?;
     let direction = match reader.exactly_one(table, &["target", "direction"])? {
-        "target" => reader.required(table, "target", VECTOR)? - position,
+        "target" => (reader.required(table, "target", POSITION)? - position).as_vec3(),
         direction => reader.required(table, direction, VECTOR)?,
     };
     Some(PhysicalCamera {
@@ -43,13 +43,13 @@ fn view(reader: &mut Reader<'_>, table: Table<'_>, default: View) -> Option<View
 fn focus_distance(
     reader: &mut Reader<'_>,
     table: Table<'_>,
-    (position, direction): (Vec3, Vec3),
+    (position, direction): (DVec3, Vec3),
     default: f32,
 ) -> Option<f32> {
     match reader.at_most_one(table, &["focus-distance", "focus"])? {
         Some("focus") => {
-            let point = reader.required(table, "focus", VECTOR)?;
-            Some((point - position).dot(direction.normalize_or_zero()))
+            let point = reader.required(table, "focus", POSITION)?;
+            Some((point - position).as_vec3().dot(direction.normalize_or_zero()))
         }
         Some(distance) => reader.required(table, distance, NUMBER),
         // A target at the position has no direction either, which is what should be said then.

@@ -3,7 +3,7 @@
 use super::build::Builder;
 use super::document::Table;
 use super::places::MaterialPlace;
-use super::value::{COLOR, FLAG, NUMBER, VECTOR};
+use super::value::{COLOR, FLAG, NUMBER, POSITION, VECTOR};
 use glam::Vec3;
 use lightcuts_scene::physical::{
     EmissionDesc, EmitterDesc, EmitterKind, PhysicalObject, PhysicalShape, Scattering, SurfaceDesc,
@@ -66,13 +66,13 @@ impl<'d> Builder<'d> {
     fn point(&mut self, table: Table<'_>) -> Option<EmitterKind> {
         // The same intensity in all directions of the sphere.
         let intensity = self.strength(table, "intensity", 1.0 / (4.0 * PI))?;
-        Some(EmitterKind::Point { position: self.reader.required(table, "position", VECTOR)?, intensity })
+        Some(EmitterKind::Point { position: self.reader.required(table, "position", POSITION)?, intensity })
     }
 
     fn spot(&mut self, table: Table<'_>) -> Option<EmitterKind> {
-        let position = self.reader.required(table, "position", VECTOR)?;
+        let position = self.reader.required(table, "position", POSITION)?;
         let direction = match self.reader.exactly_one(table, &["direction", "target"])? {
-            "target" => self.reader.required(table, "target", VECTOR)? - position,
+            "target" => (self.reader.required(table, "target", POSITION)? - position).as_vec3(),
             direction => self.reader.required(table, direction, VECTOR)?,
         };
         Some(EmitterKind::Spot {

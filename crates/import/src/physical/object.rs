@@ -4,8 +4,8 @@ use super::build::Builder;
 use super::cuboid;
 use super::document::Table;
 use super::placement::{self, placement};
-use super::value::{FLAG, NUMBER, TEXT, VECTOR};
-use glam::{Affine3A, Quat};
+use super::value::{FLAG, NUMBER, POSITION, TEXT, VECTOR};
+use glam::{DAffine3, DQuat};
 use lightcuts_scene::MeshId;
 use lightcuts_scene::physical::{PhysicalObject, PhysicalShape};
 
@@ -82,14 +82,14 @@ impl<'d> Builder<'d> {
 
     pub(super) fn sphere(&mut self, table: Table<'_>) -> Option<PhysicalShape> {
         Some(PhysicalShape::Sphere {
-            center: self.reader.required(table, "center", VECTOR)?,
+            center: self.reader.required(table, "center", POSITION)?,
             radius: self.reader.required(table, "radius", NUMBER)?,
         })
     }
 
     pub(super) fn rectangle(&mut self, table: Table<'_>) -> Option<PhysicalShape> {
         Some(PhysicalShape::Rectangle {
-            center: self.reader.required(table, "center", VECTOR)?,
+            center: self.reader.required(table, "center", POSITION)?,
             normal: self.reader.required(table, "normal", VECTOR)?,
             head: self.reader.required(table, "head", VECTOR)?,
             width: self.reader.required(table, "width", NUMBER)?,
@@ -98,8 +98,8 @@ impl<'d> Builder<'d> {
     }
 
     fn cuboid(&mut self, table: Table<'d>) -> Option<PhysicalShape> {
-        let center = self.reader.required(table, "center", VECTOR)?;
-        let size = self.reader.required(table, "size", VECTOR)?;
+        let center = self.reader.required(table, "center", POSITION)?;
+        let size = self.reader.required(table, "size", POSITION)?;
         if size.min_element() <= 0.0 {
             self.reader.error_at(table, "size", &format!("`size` is {size}"), "three lengths above 0");
             return None;
@@ -108,7 +108,7 @@ impl<'d> Builder<'d> {
             Some(mesh) => mesh,
             None => self.push_cube(table),
         };
-        let local = Affine3A::from_scale_rotation_translation(size, Quat::IDENTITY, center);
+        let local = DAffine3::from_scale_rotation_translation(size, DQuat::IDENTITY, center);
         let placement = placement(&mut self.reader, table)? * local;
         Some(PhysicalShape::Mesh { mesh, placement, smooth: false, override_material: true })
     }

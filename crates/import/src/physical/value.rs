@@ -1,8 +1,10 @@
 //! Values of a document, and what they may be.
 
 use super::document::Table;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+use std::num::ParseFloatError;
 use std::ops::Range;
+use std::str::FromStr as _;
 use toml::Spanned;
 use toml::de::DeValue;
 
@@ -43,14 +45,16 @@ pub(super) enum Read<T> {
 pub(super) const NUMBER: Kind<f32> = Kind { expected: "a number such as 1.5", read: number };
 pub(super) const WHOLE: Kind<i64> = Kind { expected: "a whole number such as 1", read: whole };
 pub(super) const VECTOR: Kind<Vec3> = Kind { expected: "three numbers such as [0, 1, 0]", read: vector };
+/// Places are read with 64 bits, so that a scene far from the origin keeps its form.
+pub(super) const POSITION: Kind<DVec3> = Kind { expected: VECTOR.expected, read: position };
 pub(super) const COLOR: Kind<Vec3> = Kind { expected: "a number or three such as [0.8, 0.5, 0.2]", read: color };
-pub(super) const FACTORS: Kind<Vec3> = Kind { expected: "a number or three such as [1, 2, 1]", read: color };
+pub(super) const FACTORS: Kind<DVec3> = Kind { expected: "a number or three such as [1, 2, 1]", read: factors };
 pub(super) const TEXT: Kind<String> = Kind { expected: "a text such as \"name\"", read: text };
 pub(super) const FILE: Kind<String> = Kind { expected: "the name of a file such as \"model.obj\"", read: text };
 pub(super) const MATERIAL: Kind<String> = Kind { expected: "the name of a [[material]]", read: text };
 pub(super) const MESH: Kind<String> = Kind { expected: "the name of a [[mesh]]", read: text };
 pub(super) const FLAG: Kind<bool> = Kind { expected: "true or false", read: flag };
-pub(super) const MATRIX: Kind<[[f32; 4]; 4]> =
+pub(super) const MATRIX: Kind<[[f64; 4]; 4]> =
     Kind { expected: "four rows of four numbers, the last one [0, 0, 0, 1]", read: matrix };
 
 impl<'d> Value<'d> {
@@ -86,15 +90,30 @@ impl<'d> Value<'d> {
 }
 
 fn number(value: Value<'_>) -> Read<f32> {
+    // Parsed with 32 bits at once: by way of 64 it would be rounded twice.
+    number_of(value, f32::from_str, |whole| whole as f32, |number| number)
+}
+
+/// A number that a 32-bit one can come near to, with the precision of 64.
+fn exact_number(value: Value<'_>) -> Read<f64> {
+    number_of(value, f64::from_str, |whole| whole as f64, |number| number as f32)
+}
+
+fn number_of<T: Copy>(
+    value: Value<'_>,
+    parse: fn(&str) -> Result<T, ParseFloatError>,
+    of_whole: fn(i64) -> T,
+    rounded: fn(T) -> f32,
+) -> Read<T> {
     let parsed = match value.content {
-        DeValue::Float(float) => float.as_str().parse().ok(),
-        DeValue::Integer(whole) if whole.radix() == 10 => whole.as_str().parse().ok(),
-        DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix()).ok().map(|whole| whole as f32),
+        DeValue::Float(float) => parse(float.as_str()).ok(),
+        DeValue::Integer(whole) if whole.radix() == 10 => parse(whole.as_str()).ok(),
+        DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix()).ok().map(of_whole),
         _ => return Read::Other,
     };
     match parsed {
-        Some(number) if f32::is_finite(number) => Read::Good(number),
-        Some(number) if number.is_nan() => Read::Bad(value.span(), "is not a number".to_owned()),
+        Some(number) if rounded(number).is_finite() => Read::Good(number),
+        Some(number) if rounded(number).is_nan() => Read::Bad(value.span(), "is not a number".to_owned()),
         _ => Read::Bad(value.span(), "is too large for a 32-bit number".to_owned()),
     }
 }
@@ -108,7 +127,18 @@ fn whole(value: Value<'_>) -> Read<i64> {
 }
 
 fn vector(value: Value<'_>) -> Read<Vec3> {
-    row(value).map(Vec3::from_array)
+    list(value, number).map(Vec3::from_array)
+}
+
+fn position(value: Value<'_>) -> Read<DVec3> {
+    list(value, exact_number).map(DVec3::from_array)
+}
+
+fn factors(value: Value<'_>) -> Read<DVec3> {
+    match value.content {
+        DeValue::Array(_) => position(value),
+        _ => exact_number(value).map(DVec3::splat),
+    }
 }
 
 fn color(value: Value<'_>) -> Read<Vec3> {
@@ -126,12 +156,8 @@ fn flag(value: Value<'_>) -> Read<bool> {
     value.content.as_bool().map_or(Read::Other, Read::Good)
 }
 
-fn matrix(value: Value<'_>) -> Read<[[f32; 4]; 4]> {
-    list(value, row)
-}
-
-fn row<const N: usize>(value: Value<'_>) -> Read<[f32; N]> {
-    list(value, number)
+fn matrix(value: Value<'_>) -> Read<[[f64; 4]; 4]> {
+    list(value, |row| list(row, exact_number))
 }
 
 /// Exactly N items.

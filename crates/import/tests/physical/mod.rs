@@ -4,7 +4,7 @@ mod malformed;
 mod models;
 mod schema;
 
-use glam::{Quat, Vec3};
+use glam::{DAffine3, DQuat, DVec3, Vec3};
 use lightcuts_import::{
     AnyScene, ImportError, ImportOptions, Imported, Limits, MemoryResolver, load, load_any, parse_physical,
 };
@@ -59,7 +59,7 @@ fn pfm(values: [f32; 3]) -> Vec<u8> {
 #[test]
 fn the_camera_has_defaults_for_all_but_where_it_looks() {
     let camera = scene("", &[]).camera;
-    assert_eq!((camera.position, camera.direction, camera.up), (Vec3::new(0.0, 1.0, 5.0), Vec3::Z * -5.0, Vec3::Y));
+    assert_eq!((camera.position, camera.direction, camera.up), (DVec3::new(0.0, 1.0, 5.0), Vec3::Z * -5.0, Vec3::Y));
     assert_eq!(camera.view, View::Perspective { degrees: 40.0 });
     assert_eq!((camera.near, camera.lens_radius, camera.focus_distance), (0.0, 0.0, 5.0));
     let start = "format = \"lightcuts-scene\"\nversion = 1\nname = \"n\"\n[camera]\nposition = [1, 0, 0]\n";
@@ -179,7 +179,7 @@ fn every_light_is_read() {
         &[],
     );
     let kinds: Vec<EmitterKind> = made.lights.iter().map(|light| light.kind).collect();
-    let position = Vec3::new(1.0, 2.0, 3.0);
+    let position = DVec3::new(1.0, 2.0, 3.0);
     assert_eq!(kinds[0], EmitterKind::Point { position, intensity: Vec3::new(4.0, 5.0, 6.0) });
     let EmitterKind::Point { intensity, .. } = kinds[1] else { panic!("a point") };
     assert!((intensity.x * 4.0 * PI - 100.0).abs() < 1e-4);
@@ -210,7 +210,7 @@ fn every_object_is_read() {
         ),
         &[],
     );
-    let center = Vec3::new(1.0, 2.0, 3.0);
+    let center = DVec3::new(1.0, 2.0, 3.0);
     assert_eq!(made.objects[0].shape, PhysicalShape::Sphere { center, radius: 4.0 });
     let (normal, head) = (Vec3::Y, Vec3::Z);
     assert_eq!(made.objects[1].shape, PhysicalShape::Rectangle { center, normal, head, width: 5.0, height: 6.0 });
@@ -218,7 +218,7 @@ fn every_object_is_read() {
 }
 
 /// The placement of the one object.
-fn placed(made: &PhysicalScene, i: usize) -> glam::Affine3A {
+fn placed(made: &PhysicalScene, i: usize) -> DAffine3 {
     let PhysicalShape::Mesh { placement, .. } = made.objects[i].shape else { panic!("a mesh") };
     placement
 }
@@ -233,13 +233,13 @@ fn objects_are_scaled_turned_and_moved() {
          {object}matrix = [[1, 0, 0, 4], [0, 0, -1, 5], [0, 1, 0, 6], [0, 0, 0, 1]]\n{object}"
     );
     let made = scene(&body, &[("t.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")]);
-    let near = |a: Vec3, b: Vec3| assert!((a - b).length() < 1e-5, "{a} {b}");
+    let near = |a: DVec3, b: DVec3| assert!((a - b).length() < 1e-5, "{a} {b}");
     // x is scaled by 1, turned to y and then to z.
-    near(placed(&made, 0).transform_point3(Vec3::X), Vec3::new(10.0, 20.0, 31.0));
-    near(placed(&made, 0).transform_point3(Vec3::Y), Vec3::new(8.0, 20.0, 30.0));
-    near(placed(&made, 1).transform_point3(Vec3::X), Vec3::new(0.0, 0.0, -2.0));
-    near(placed(&made, 2).transform_point3(Vec3::Y), Vec3::new(4.0, 5.0, 7.0));
-    assert_eq!(placed(&made, 3), glam::Affine3A::IDENTITY);
+    near(placed(&made, 0).transform_point3(DVec3::X), DVec3::new(10.0, 20.0, 31.0));
+    near(placed(&made, 0).transform_point3(DVec3::Y), DVec3::new(8.0, 20.0, 30.0));
+    near(placed(&made, 1).transform_point3(DVec3::X), DVec3::new(0.0, 0.0, -2.0));
+    near(placed(&made, 2).transform_point3(DVec3::Y), DVec3::new(4.0, 5.0, 7.0));
+    assert_eq!(placed(&made, 3), DAffine3::IDENTITY);
     assert_eq!((made.meshes.len(), made.objects.len()), (1, 4));
     assert!(matches!(made.objects[1].shape, PhysicalShape::Mesh { smooth: false, override_material: true, .. }));
 }
@@ -253,9 +253,9 @@ fn boxes_are_placed_cubes() {
     );
     let made = scene(&body, &[]);
     assert_eq!((made.meshes.len(), made.meshes[0].triangles.len()), (1, 12));
-    let corner = Vec3::splat(0.5);
-    assert_eq!(placed(&made, 0).transform_point3(corner), Vec3::new(2.0, 2.0, 3.0));
-    let turned = Quat::from_rotation_z(PI / 2.0) * Vec3::new(2.0, 2.0, 3.0) + Vec3::Y;
+    let corner = DVec3::splat(0.5);
+    assert_eq!(placed(&made, 0).transform_point3(corner), DVec3::new(2.0, 2.0, 3.0));
+    let turned = DQuat::from_rotation_z(f64::from(PI) / 2.0) * DVec3::new(2.0, 2.0, 3.0) + DVec3::Y;
     assert!((placed(&made, 1).transform_point3(corner) - turned).length() < 1e-5);
 }
 

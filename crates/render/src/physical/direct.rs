@@ -9,6 +9,7 @@ use lightcuts_kernel::emitter::{Emitter, RECTANGLE_LIGHT, SPHERE_LIGHT, TRIANGLE
 use lightcuts_kernel::emitter_tree::{Lit, leaf_probability, sample_emitter_tree};
 use lightcuts_kernel::environment::{environment_pdf, environment_radiance, sample_environment};
 use lightcuts_kernel::ray::{NONE, Ray};
+use lightcuts_kernel::rounding::plane_error;
 use lightcuts_kernel::scatter::{TexturePlace, image_at, is_there};
 use lightcuts_kernel::texture::sphere_coordinates;
 
@@ -166,7 +167,12 @@ impl Scene<'_> {
         } else {
             let target = at.point + sample.direction * sample.distance;
             let image = self.emitter_texture(emitter, target, sample.place)?;
-            (sample.color * image, at.ray_to(target, target.abs().max_element() * EMITTER_EPSILON))
+            if !self.is_first_there(emitter, target, -sample.direction) {
+                return None;
+            }
+            let normal = emitter_normal(emitter, target, -sample.direction);
+            let lift = normal * plane_error(target, normal, emitter.slack);
+            (sample.color * image, at.ray_to(target + lift, normal))
         };
         let pdf = sample.pdf * chance;
         let light = color / if has_extent { pdf } else { chance };
@@ -191,8 +197,7 @@ impl Scene<'_> {
                 [at(0), at(1)]
             }
             SPHERE_LIGHT => sphere_coordinates(((target - emitter.position) / emitter.radius).normalize_or_zero()),
-            // A square's width runs to the left along its first edge.
-            _ => [1.0 - place[0], place[1]],
+            _ => place,
         };
         let place = TexturePlace { uv, width: 0.0 };
         is_there(scatter, self.images(), &place).then(|| image_at(self.images(), emitter.image, &place).truncate())
@@ -227,8 +232,15 @@ impl Scene<'_> {
     }
 }
 
-/// Relative distance that keeps shadow rays from the light itself.
-const EMITTER_EPSILON: f32 = 2e-5;
+/// Unit normal of an emitter's surface, on the side of a direction; zero without a surface.
+fn emitter_normal(emitter: &Emitter, place: Vec3, direction: Vec3) -> Vec3 {
+    let normal = match emitter.kind {
+        SPHERE_LIGHT => (place - emitter.position).normalize_or_zero(),
+        TRIANGLE_LIGHT | RECTANGLE_LIGHT => emitter.direction,
+        _ => Vec3::ZERO,
+    };
+    if normal.dot(direction) < 0.0 { -normal } else { normal }
+}
 
 fn lit(at: &Interaction) -> Lit {
     let normal = if at.wo.z < 0.0 { -at.normal } else { at.normal };

@@ -8,7 +8,8 @@ use lightcuts_kernel::emitter::{
     Emitter, PARALLEL, POINT, RECTANGLE_LIGHT, SPHERE_LIGHT, SPOT, TRIANGLE_LIGHT, emitter_power, spot_falloff,
 };
 use lightcuts_kernel::environment::{environment_radiance, interval_of, sample_environment};
-use lightcuts_kernel::ray::{NONE, RELATIVE_EPSILON, Ray};
+use lightcuts_kernel::ray::{NONE, Ray};
+use lightcuts_kernel::rounding::plane_error;
 use lightcuts_kernel::sampling::{frame, sample_cosine_cone, sin_cos_turns};
 use std::f32::consts::PI;
 
@@ -95,7 +96,10 @@ impl Origins {
                 let turned = emitter.two_sided != 0 && side < 0.5;
                 let normal = if turned { -normal } else { normal };
                 let direction = sample_cosine_cone(normal, 1.0, turn);
-                let epsilon = RELATIVE_EPSILON * target.abs().max_element();
+                if !scene.is_first_there(emitter, target, direction) {
+                    return None;
+                }
+                let epsilon = plane_error(target, normal, emitter.slack);
                 let power = emitter_power(emitter) * image;
                 Some(Departure { ray: ray(target + normal * epsilon, direction), power })
             }

@@ -9,7 +9,6 @@ use lightcuts_kernel::bsdf::{GLOSSY, MATT, Transport};
 use lightcuts_kernel::cluster::{
     BoundReceiver, ClusterReach, LIGHT_CHILD, bsdf_bound, cluster_reach, first_probability, light_power, reach_bound,
 };
-use lightcuts_kernel::ray::RELATIVE_EPSILON;
 use lightcuts_kernel::virtual_light::{VirtualLight, virtual_emission};
 
 /// A point that is lit, and what of its light counts.
@@ -84,9 +83,7 @@ impl<'a> Receiver<'a> {
             return sent;
         }
         counts.shadow += 1;
-        // Lights are off their surface already.
-        let epsilon = RELATIVE_EPSILON * light.position.abs().max_element();
-        if self.scene.is_free(&self.at.ray_to(light.position, epsilon)) { sent } else { Vec3::ZERO }
+        if self.scene.is_free(&self.at.ray_to(light.position, light.normal)) { sent } else { Vec3::ZERO }
     }
 
     pub(super) fn reach(&self, tree: &ClusterTree, node: u32, counts: &mut Counts) -> ClusterReach {

@@ -294,7 +294,7 @@ impl<'a> PhysicalJob<'a> {
         stats.total_cpu_s = stats.passes.iter().map(|pass| pass.cpu_s).sum();
         stats.devices =
             vec![StationDevice { station: "gather".to_owned(), kind: "cpu".to_owned(), name: processor_name() }];
-        self.mixture.develop(self.stats)
+        self.mixture.develop(self.stats, self.scene.world.origin)
     }
 }
 

@@ -8,7 +8,7 @@ use super::pass::{Extent, Moments, PROBES_OF_A_GROUP, PixelSums, SampledTile, Ta
 use super::rendering::PhysicalRendering;
 use crate::film::{Film, Tile};
 use crate::stats::Stats;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lightcuts_image::{Image, Plane};
 use rayon::prelude::*;
 
@@ -280,7 +280,8 @@ impl Mixture {
         self.canvases.iter().zip(weights).filter_map(of).sum()
     }
 
-    pub(crate) fn develop(self, stats: Stats) -> PhysicalRendering {
+    /// The picture; `origin` is where the world lies in the scene.
+    pub(crate) fn develop(self, stats: Stats, origin: DVec3) -> PhysicalRendering {
         let beauty = self.image(|i, j| self.mean(i, j, |canvas| &canvas.all));
         let indirect = self.image(|i, j| self.mean(i, j, |canvas| &canvas.indirect));
         let direct =
@@ -294,7 +295,7 @@ impl Mixture {
             indirect,
             albedo: self.image(|i, j| over(self.at(i, j).albedo, self.at(i, j).samples)),
             normal: self.image(|i, j| over(self.at(i, j).normal, self.at(i, j).hits)),
-            position: self.image(|i, j| over(self.at(i, j).position, self.at(i, j).hits)),
+            position: self.image(|i, j| self.position(i, j, origin)),
             depth: self.plane(|p| if p.hits == 0 { f32::INFINITY } else { p.depth / p.hits as f32 }),
             object_id: self.plane(|p| p.object),
             material_id: self.plane(|p| p.material),
@@ -306,6 +307,12 @@ impl Mixture {
             error_bound: self.plane(|p| mean(p.bound, p.cuts)),
             stats,
         }
+    }
+
+    /// Where a pixel's samples hit something, in the scene.
+    fn position(&self, i: usize, j: usize, origin: DVec3) -> Vec3 {
+        let PixelSums { position, hits, .. } = *self.at(i, j);
+        if hits == 0 { Vec3::ZERO } else { (position.as_dvec3() / f64::from(hits) + origin).as_vec3() }
     }
 
     fn at(&self, i: usize, j: usize) -> &PixelSums {

@@ -20,6 +20,7 @@ mod scene;
 mod technique;
 #[cfg(test)]
 mod tests;
+mod ties;
 mod vpls;
 
 pub use rendering::PhysicalRendering;

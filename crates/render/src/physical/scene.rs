@@ -5,8 +5,11 @@ use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::bsdf::{Bsdf, BsdfSample, DIELECTRIC, Transport, bsdf_pdf, bsdf_value, sample_bsdf};
 use lightcuts_kernel::environment::EnvironmentMap;
-use lightcuts_kernel::intersect::{SPHERE, TRIANGLE};
-use lightcuts_kernel::ray::{Hit, NONE, Ray, spawn_epsilon};
+use lightcuts_kernel::intersect::{SPHERE, SQUARE, TRIANGLE};
+use lightcuts_kernel::ray::{Hit, NONE, Ray};
+use lightcuts_kernel::rounding::{
+    APPROACH, REACH, onto_plane, onto_sphere, onto_square, plane_error, sphere_slack, square_slack,
+};
 use lightcuts_kernel::sampling::frame;
 use lightcuts_kernel::scatter::{
     Images, TexturePlace, chosen_scatter, is_there, scatter_bsdf, scatter_normal, scatter_radiance,
@@ -15,6 +18,7 @@ use lightcuts_kernel::surface::{Surface, surface_at};
 use lightcuts_kernel::texture::surface_point;
 use lightcuts_world::PhysicalWorld;
 use lightcuts_world::bvh::LANES;
+use lightcuts_world::physical::Face;
 
 /// Surfaces with holes that a ray may pass through, one behind the other.
 const MAX_HOLES: u32 = 1024;
@@ -68,6 +72,22 @@ pub(crate) struct Interaction {
     pub(crate) material: u32,
     /// Distance that keeps other rays from their own surface, in scene units.
     pub(crate) epsilon: f32,
+    /// From the point to where rays begin that go on the side from which this one came.
+    pub(crate) lift: Vec3,
+}
+
+/// The surface itself at a hit.
+struct Plane {
+    /// The point, put back onto the surface.
+    point: Vec3,
+    /// Unit normal.
+    normal: Vec3,
+    /// Unit direction in which u grows.
+    tangent: Vec3,
+    /// Texture coordinates per scene unit; negative where v grows against normal x tangent.
+    texture_density: f32,
+    /// How far the point may be off the surface, in scene units.
+    error: f32,
 }
 
 impl<'a> Scene<'a> {
@@ -90,7 +110,7 @@ impl<'a> Scene<'a> {
                 return None;
             }
             if !self.world.has_masks || self.is_there(&ray, &hit) {
-                return Some(hit);
+                return Some(self.first_of_tied(&ray, hit));
             }
             ray.t_min = hit.t;
         }
@@ -107,7 +127,13 @@ impl<'a> Scene<'a> {
         if self.world.has_masks {
             return rays.map(|ray| self.closest(&ray));
         }
-        self.tracer.closest8(rays).map(|hit| hit.is_some().then_some(hit))
+        let mut hits = self.tracer.closest8(rays);
+        if !self.world.ties.is_empty() {
+            for (hit, ray) in hits.iter_mut().zip(rays).filter(|(hit, _)| hit.is_some()) {
+                *hit = self.first_of_tied(ray, *hit);
+            }
+        }
+        hits.map(|hit| hit.is_some().then_some(hit))
     }
 
     /// Which of the rays in `asked`, a bit each, something lies between the ends of. Holes are not looked at.
@@ -115,14 +141,13 @@ impl<'a> Scene<'a> {
         self.tracer.occluded_lanes(rays, asked)
     }
 
-    fn is_there(&self, ray: &Ray, hit: &Hit) -> bool {
+    pub(super) fn is_there(&self, ray: &Ray, hit: &Hit) -> bool {
         let surfaces = self.world.shapes.surfaces();
         let scatter = &self.world.scatters[surfaces.primitives[hit.primitive as usize].material as usize];
         if scatter.mask_image == NONE {
             return true;
         }
-        let surface = surface_at(&surfaces, ray, hit);
-        let uv = surface_point(&surfaces, hit, &surface).uv;
+        let uv = self.texture_coordinates(hit, &surface_at(&surfaces, ray, hit));
         is_there(scatter, &self.images, &TexturePlace { uv, width: 0.0 })
     }
 
@@ -130,12 +155,12 @@ impl<'a> Scene<'a> {
     pub(crate) fn interaction(&self, ray: &Ray, hit: &Hit, cone: Cone, random: f32) -> Interaction {
         let surfaces = self.world.shapes.surfaces();
         let surface = surface_at(&surfaces, ray, hit);
-        let (face, tangent, density) = self.plane(hit, &surface);
+        let Plane { point, normal: face, tangent, texture_density, error } = self.plane(hit, &surface);
         let toward = -ray.direction;
-        let uv = surface_point(&surfaces, hit, &surface).uv;
+        let uv = self.texture_coordinates(hit, &surface);
         // A footprint that is stretched by a grazing view is taken as round: narrow enough not to blur across.
         let cos = face.dot(toward).abs().max(0.2);
-        let place = TexturePlace { uv, width: cone.after(hit.t).width * density / cos };
+        let place = TexturePlace { uv, width: cone.after(hit.t).width * texture_density.abs() / cos };
         let index = chosen_scatter(&self.world.scatters, &self.images, surface.material, &place, random);
         let scatter = &self.world.scatters[index as usize];
         let own = &self.world.scatters[surface.material as usize];
@@ -146,7 +171,8 @@ impl<'a> Scene<'a> {
         let bent = scatter_normal(scatter, &self.images, &place);
         if bent != Vec3::Z {
             let along = (tangent - normal * normal.dot(tangent)).normalize_or_zero();
-            normal = (along * bent.x + normal.cross(along) * bent.y + normal * bent.z).normalize_or(normal);
+            let up = normal.cross(along) * 1.0_f32.copysign(texture_density);
+            normal = (along * bent.x + up * bent.y + normal * bent.z).normalize_or(normal);
         }
         // A normal that turns a surface away from who sees it says nothing.
         if normal.dot(toward) * face.dot(toward) <= 0.0 {
@@ -154,8 +180,11 @@ impl<'a> Scene<'a> {
         }
         let tangents = frame(normal);
         let wo = to_local(tangents, normal, toward);
+        let epsilon = error.max(self.world.ties.slack(hit.primitive));
+        // A little back along the ray too: at an edge it keeps to its side of whatever else ends there.
+        let lift = face * epsilon.copysign(face.dot(toward)) + toward * (0.5 * epsilon);
         Interaction {
-            point: surface.point,
+            point,
             face,
             normal,
             tangents,
@@ -165,30 +194,48 @@ impl<'a> Scene<'a> {
             emitter: self.world.primitive_emitters[hit.primitive as usize],
             object: surface.object,
             material: surface.material,
-            epsilon: spawn_epsilon(Rules::Repaired, surface.point, hit.t),
+            epsilon,
+            lift,
         }
     }
 
-    /// Unit normal of a hit's surface itself, direction of growing u, and texture coordinates per unit.
-    fn plane(&self, hit: &Hit, surface: &Surface) -> (Vec3, Vec3, f32) {
+    /// The surface itself at a hit.
+    fn plane(&self, hit: &Hit, surface: &Surface) -> Plane {
         let shapes = &self.world.shapes;
         let primitive = shapes.primitives[hit.primitive as usize];
+        let index = primitive.index as usize;
         match primitive.kind {
             TRIANGLE => {
-                let face = &self.world.faces[primitive.index as usize];
-                (face.normal, face.tangent, face.texture_density)
+                let face = &self.world.faces[index];
+                let point = onto_plane(surface.point, face.normal, face.offset);
+                let error = plane_error(point, face.normal, shapes.corners[index].slack);
+                let Face { normal, tangent, texture_density, .. } = *face;
+                Plane { point, normal, tangent, texture_density, error }
             }
             SPHERE => {
-                let around = Vec3::Y.cross(surface.normal).normalize_or_zero();
-                let radius = shapes.spheres[primitive.index as usize].radius;
-                (surface.normal, around, 1.0 / (radius * std::f32::consts::PI * std::f32::consts::SQRT_2))
+                let sphere = &shapes.spheres[index];
+                let (point, normal) = (onto_sphere(surface.point, sphere), surface.normal);
+                let tangent = Vec3::Y.cross(normal).normalize_or_zero();
+                let texture_density = 1.0 / (sphere.radius * std::f32::consts::PI * std::f32::consts::SQRT_2);
+                let error = plane_error(point, normal, sphere_slack(sphere.radius));
+                Plane { point, normal, tangent, texture_density, error }
             }
             _ => {
-                let square = &shapes.squares[primitive.index as usize];
-                let density = 0.5 / (square.half_width * square.half_height).sqrt();
-                (square.normal, -square.across, density)
+                let square = &shapes.squares[index];
+                let point = onto_square(surface.point, square);
+                let error = plane_error(point, square.normal, square_slack(point, square));
+                let texture_density = 0.5 / (square.half_width * square.half_height).sqrt();
+                Plane { point, normal: square.normal, tangent: square.across, texture_density, error }
             }
         }
+    }
+
+    /// Texture coordinates at a hit: on a rectangle u grows to the right and v up, seen from the normal's side with the head up.
+    pub(super) fn texture_coordinates(&self, hit: &Hit, surface: &Surface) -> [f32; 2] {
+        let surfaces = self.world.shapes.surfaces();
+        let [u, v] = surface_point(&surfaces, hit, surface).uv;
+        // The thesis' squares show their pictures mirrored.
+        if surfaces.primitives[hit.primitive as usize].kind == SQUARE { [1.0 - u, v] } else { [u, v] }
     }
 
     /// Images of the world.
@@ -253,21 +300,25 @@ impl Interaction {
         self.bsdf.kind == DIELECTRIC
     }
 
-    /// The ray in a direction up to a distance.
-    pub(crate) fn ray(&self, direction: Vec3, distance: f32) -> Ray {
-        // Off the surface, on the side that it goes to.
-        let side = self.face * self.epsilon.copysign(self.face.dot(direction));
-        Ray { origin: self.point + side, direction, t_min: 0.0, t_max: distance, inside: false }
+    /// Where a ray begins that goes in a direction: off the surface, on the side that it goes to.
+    fn start(&self, direction: Vec3) -> Vec3 {
+        if (self.face.dot(direction) < 0.0) == (self.face.dot(self.lift) < 0.0) {
+            return self.point + self.lift;
+        }
+        self.point + self.face * self.epsilon.copysign(self.face.dot(direction))
     }
 
-    /// The ray to a place that must be free for the place to be seen.
-    pub(crate) fn ray_to(&self, target: Vec3, target_epsilon: f32) -> Ray {
-        let toward = target - self.point;
-        let side = self.face * self.epsilon.copysign(self.face.dot(toward));
-        let origin = self.point + side;
-        let path = target - origin;
-        let length = path.length();
-        let end = 1.0 - 2.0 * (self.epsilon + target_epsilon) / length.max(f32::MIN_POSITIVE);
-        Ray { origin, direction: path, t_min: 0.0, t_max: end.max(0.0), inside: false }
+    /// The ray in a direction up to a distance.
+    pub(crate) fn ray(&self, direction: Vec3, distance: f32) -> Ray {
+        Ray { origin: self.start(direction), direction, t_min: 0.0, t_max: distance, inside: false }
+    }
+
+    /// The ray to a place that must be free for the place to be seen. The place is off its own surface already, on the side of
+    /// `normal`; without a surface that is zero.
+    pub(crate) fn ray_to(&self, place: Vec3, normal: Vec3) -> Ray {
+        let way = place - self.point;
+        let origin = self.start(way);
+        let direction = place + normal * (way.length() * APPROACH) - origin;
+        Ray { origin, direction, t_min: 0.0, t_max: REACH, inside: false }
     }
 }

@@ -50,7 +50,7 @@ fn virtual_light(arrival: &Arrival<'_>, tables: &[f32]) -> Option<VirtualLight> 
     let intensity = power * bsdf.diffuse * (coat * ratio / PI);
     let side = 1.0_f32.copysign(at.face.dot(from));
     (intensity.is_finite() && intensity.max_element() > 0.0).then(|| VirtualLight {
-        position: at.point + at.face * (side * at.epsilon),
+        position: at.point + at.lift,
         table: virtual_table(bsdf),
         normal: at.face * side,
         shading: pack_direction(at.normal * side),

@@ -1,10 +1,10 @@
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// The view of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhysicalCamera {
     /// Where it stands, in scene units.
-    pub position: Vec3,
+    pub position: DVec3,
     /// View direction, any length but zero.
     pub direction: Vec3,
     /// Up direction, any length but zero, not parallel to `direction`.
@@ -38,7 +38,7 @@ impl Default for PhysicalCamera {
     /// At the origin, looking along -z.
     fn default() -> Self {
         Self {
-            position: Vec3::ZERO,
+            position: DVec3::ZERO,
             direction: Vec3::NEG_Z,
             up: Vec3::Y,
             view: View::Perspective { degrees: 40.0 },

@@ -1,6 +1,6 @@
 use super::ImageId;
 use crate::Location;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// A light that is no surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,14 +17,14 @@ pub enum EmitterKind {
     /// A point that shines equally in all directions.
     Point {
         /// Position in scene units.
-        position: Vec3,
+        position: DVec3,
         /// Radiant intensity in W/sr.
         intensity: Vec3,
     },
     /// A point that shines into a cone.
     Spot {
         /// Position in scene units.
-        position: Vec3,
+        position: DVec3,
         /// Axis of the cone, any length but zero.
         direction: Vec3,
         /// Radiant intensity within `inner_degrees` of the axis, in W/sr.

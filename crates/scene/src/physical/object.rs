@@ -1,6 +1,6 @@
 use super::SurfaceId;
 use crate::{Location, MeshId};
-use glam::{Affine3A, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 
 /// A thing that rays can hit.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,14 +21,14 @@ pub enum PhysicalShape {
     /// A sphere; its normal points outwards.
     Sphere {
         /// Centre in scene units.
-        center: Vec3,
+        center: DVec3,
         /// Radius in scene units, above zero.
         radius: f32,
     },
     /// A rectangle.
     Rectangle {
         /// Centre in scene units.
-        center: Vec3,
+        center: DVec3,
         /// Its normal, any length but zero.
         normal: Vec3,
         /// Direction of the edges of length `height`, not parallel to `normal`.
@@ -43,7 +43,7 @@ pub enum PhysicalShape {
         /// The triangles, in the mesh's own space.
         mesh: MeshId,
         /// From the mesh's space to the scene's.
-        placement: Affine3A,
+        placement: DAffine3,
         /// Whether vertex normals are interpolated; else each triangle is flat.
         smooth: bool,
         /// Whether the object's material replaces those of the mesh.

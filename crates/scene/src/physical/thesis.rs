@@ -8,9 +8,10 @@ use super::{
     PixelImage, Pixels, Scattering, SurfaceDesc, SurfaceId, Tint, View,
 };
 use crate::{
-    ImageDesc, LightDesc, LightKind, MaterialDesc, MaterialId, ObjectDesc, Projection, SceneDesc, ShapeDesc, Transform,
+    ImageDesc, LightDesc, LightKind, MaterialDesc, MaterialId, MeshDesc, MeshId, MeshTriangle, ObjectDesc, Projection,
+    SceneDesc, ShapeDesc, Transform,
 };
-use glam::{Affine3A, Mat3, Quat, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, Mat3, Mat4, Quat, Vec3};
 use std::f32::consts::PI;
 
 /// Height of the thesis' view plane, in scene units.
@@ -39,6 +40,7 @@ pub fn from_thesis(scene: &SceneDesc, light_scale: f32) -> PhysicalScene {
         made.materials[i] = material(desc, &mut made.materials);
     }
     made.objects = scene.objects.iter().flat_map(object).collect();
+    mirror_pictures(&mut made);
     let (lower, upper) = bounds(scene);
     let distance = (upper - lower).length() / 2.0;
     let strength = PI * distance * distance * light_scale;
@@ -59,7 +61,7 @@ fn camera(scene: &SceneDesc) -> PhysicalCamera {
         Projection::Orthographic => (View::Orthographic { height: PLANE_HEIGHT }, 0.0),
     };
     PhysicalCamera {
-        position: from.center - direction * behind,
+        position: (from.center - direction * behind).as_dvec3(),
         direction,
         up: from.up,
         view,
@@ -124,6 +126,56 @@ fn placement(transform: &Transform) -> Affine3A {
     Affine3A::from_mat3_translation(Mat3::from_diagonal(transform.scale) * rotation, transform.translation)
 }
 
+fn rectangle(center: Vec3, normal: Vec3, head: Vec3, width: f32, height: f32) -> PhysicalShape {
+    PhysicalShape::Rectangle { center: center.as_dvec3(), normal, head, width, height }
+}
+
+/// Squares of the thesis show their textures mirrored, rectangles do not: those that have one become meshes.
+fn mirror_pictures(made: &mut PhysicalScene) {
+    let mesh = MeshId(made.meshes.len() as u32);
+    let mut is_used = false;
+    for object in &mut made.objects {
+        let PhysicalShape::Rectangle { center, normal, head, width, height } = object.shape else { continue };
+        if !has_picture(object.material, &made.materials) {
+            continue;
+        }
+        let normal = normal.as_dvec3().normalize_or_zero();
+        let along = head.as_dvec3().reject_from_normalized(normal).normalize_or_zero();
+        let (across, along) = (along.cross(normal) * f64::from(width), along * f64::from(height));
+        let placement = DAffine3 { matrix3: DMat3::from_cols(across, along, normal), translation: center };
+        object.shape = PhysicalShape::Mesh { mesh, placement, smooth: false, override_material: true };
+        is_used = true;
+    }
+    if is_used {
+        made.meshes.push(mirrored_square());
+    }
+}
+
+/// Whether a material, or an ingredient of it, has an image.
+fn has_picture(id: SurfaceId, materials: &[SurfaceDesc]) -> bool {
+    match materials.get(id.0 as usize).map(|material| &material.scattering) {
+        Some(Scattering::Lambert { albedo: diffuse } | Scattering::Phong { diffuse, .. }) => diffuse.image.is_some(),
+        // Ingredients stand behind the mixes that they are in.
+        Some(&Scattering::Mix { first, second, .. }) => {
+            [first, second].into_iter().any(|part| part.0 > id.0 && has_picture(part, materials))
+        }
+        _ => false,
+    }
+}
+
+/// A square of edge length 1 about the origin, whose normal is z and whose pictures are mirrored.
+fn mirrored_square() -> MeshDesc {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let triangle = |of| MeshTriangle { positions: of, normals: None, texture_coordinates: Some(of), material: None };
+    MeshDesc {
+        name: "mirrored square".to_owned(),
+        positions: corners.map(|[x, y]: [f32; 2]| Vec3::new(x - 0.5, y - 0.5, 0.0)).to_vec(),
+        texture_coordinates: corners.map(|[x, y]| [1.0 - x, y]).to_vec(),
+        triangles: vec![triangle([0, 1, 2]), triangle([0, 2, 3])],
+        ..MeshDesc::default()
+    }
+}
+
 /// A box is six rectangles.
 fn object(from: &ObjectDesc) -> Vec<PhysicalObject> {
     let of = |shape| PhysicalObject {
@@ -133,9 +185,9 @@ fn object(from: &ObjectDesc) -> Vec<PhysicalObject> {
         location: from.location,
     };
     match from.shape {
-        ShapeDesc::Sphere { center, radius } => vec![of(PhysicalShape::Sphere { center, radius })],
+        ShapeDesc::Sphere { center, radius } => vec![of(PhysicalShape::Sphere { center: center.as_dvec3(), radius })],
         ShapeDesc::Square { center, normal, head, width, height } => {
-            vec![of(PhysicalShape::Rectangle { center, normal, head, width, height })]
+            vec![of(rectangle(center, normal, head, width, height))]
         }
         ShapeDesc::Cube { center, vertical, horizontal, length, width, height } => {
             let up = vertical.normalize_or_zero();
@@ -151,12 +203,13 @@ fn object(from: &ObjectDesc) -> Vec<PhysicalObject> {
                 .map(|(side, (outwards, extent, head, height, width))| {
                     let normal = outwards * side;
                     let center = center + normal * (extent / 2.0);
-                    of(PhysicalShape::Rectangle { center, normal, head, width, height })
+                    of(rectangle(center, normal, head, width, height))
                 })
                 .collect()
         }
         ShapeDesc::Mesh { mesh, ref transform, smooth, override_material } => {
-            vec![of(PhysicalShape::Mesh { mesh, placement: placement(transform), smooth, override_material })]
+            let placement = DAffine3::from_mat4(Mat4::from(placement(transform)).as_dmat4());
+            vec![of(PhysicalShape::Mesh { mesh, placement, smooth, override_material })]
         }
     }
 }
@@ -165,9 +218,11 @@ fn add_light(light: &LightDesc, strength: f32, light_scale: f32, made: &mut Phys
     let color = light.diffuse * light.attenuation;
     let mut add = |kind| made.lights.push(EmitterDesc { kind, location: light.location });
     match light.kind {
-        LightKind::Omni { position } => add(EmitterKind::Point { position, intensity: color * strength }),
+        LightKind::Omni { position } => {
+            add(EmitterKind::Point { position: position.as_dvec3(), intensity: color * strength })
+        }
         LightKind::Hemisphere { position, direction } => add(EmitterKind::Spot {
-            position,
+            position: position.as_dvec3(),
             direction,
             intensity: color * strength,
             inner_degrees: 0.0,
@@ -185,7 +240,7 @@ fn add_light(light: &LightDesc, strength: f32, light_scale: f32, made: &mut Phys
             made.materials.push(SurfaceDesc { scattering, emission, ..SurfaceDesc::default() });
             made.objects.push(PhysicalObject {
                 name: String::new(),
-                shape: PhysicalShape::Rectangle { center, normal, head, width, height },
+                shape: rectangle(center, normal, head, width, height),
                 material: id,
                 location: light.location,
             });
@@ -295,7 +350,7 @@ mod tests {
         let made = from_thesis(&scene(MaterialDesc::default(), LightKind::Omni { position: Vec3::X }), 1.0);
         let View::Perspective { degrees } = made.camera.view else { panic!() };
         assert!((degrees - 28.72).abs() < 0.01, "{degrees}");
-        assert_eq!(made.camera.position, Vec3::new(0.0, 0.0, 10.0));
+        assert_eq!(made.camera.position.as_vec3(), Vec3::new(0.0, 0.0, 10.0));
         assert_eq!(made.camera.near, 10.0);
     }
 }

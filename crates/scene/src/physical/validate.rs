@@ -85,9 +85,9 @@ impl PhysicalScene {
             PhysicalShape::Mesh { mesh, placement, .. } => {
                 check.index("mesh", mesh.0, self.meshes.len());
                 for column in [placement.x_axis, placement.y_axis, placement.z_axis, placement.translation] {
-                    check.point("placement", column.into());
+                    check.point("placement", column);
                 }
-                if placement.matrix3.determinant().abs() < f32::MIN_POSITIVE {
+                if placement.matrix3.determinant().abs() < f64::from(f32::MIN_POSITIVE) {
                     check.issue("placement", "flattens the mesh; expected one that keeps its volume");
                 }
             }
@@ -226,11 +226,11 @@ mod tests {
     use super::*;
     use crate::physical::{PhysicalObject, SurfaceId};
     use crate::{Location, MeshId};
-    use glam::Affine3A;
+    use glam::{DAffine3, DVec3};
 
     fn scene(scattering: Scattering) -> PhysicalScene {
         let material = SurfaceDesc { scattering, ..SurfaceDesc::default() };
-        let shape = PhysicalShape::Sphere { center: Vec3::ZERO, radius: 1.0 };
+        let shape = PhysicalShape::Sphere { center: DVec3::ZERO, radius: 1.0 };
         let object =
             PhysicalObject { name: String::new(), shape, material: SurfaceId(0), location: Location::default() };
         PhysicalScene { materials: vec![material], objects: vec![object], ..PhysicalScene::default() }
@@ -275,7 +275,7 @@ mod tests {
         let mut flat = scene(Scattering::default());
         flat.objects[0].shape = PhysicalShape::Mesh {
             mesh: MeshId(0),
-            placement: Affine3A::from_scale(Vec3::new(1.0, 0.0, 1.0)),
+            placement: DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0)),
             smooth: true,
             override_material: false,
         };

@@ -2,10 +2,11 @@
 
 use crate::shapes::Builder;
 use bytemuck::Zeroable;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lightcuts_kernel::emitter::{Emitter, PARALLEL, POINT, RECTANGLE_LIGHT, SPHERE_LIGHT, SPOT, TRIANGLE_LIGHT};
 use lightcuts_kernel::intersect::{SPHERE, TRIANGLE};
 use lightcuts_kernel::ray::{NONE, normalize_or_zero};
+use lightcuts_kernel::rounding::{sphere_slack, square_slack};
 use lightcuts_kernel::scatter::Scatter;
 use lightcuts_scene::physical::{EmitterKind, PhysicalScene};
 
@@ -18,7 +19,7 @@ pub(super) struct Lights {
     pub(super) of_primitives: Vec<u32>,
 }
 
-pub(super) fn collect(scene: &PhysicalScene, builder: &Builder, scatters: &[Scatter]) -> Lights {
+pub(super) fn collect(scene: &PhysicalScene, origin: DVec3, builder: &Builder, scatters: &[Scatter]) -> Lights {
     let mut emitters: Vec<Emitter> = Vec::new();
     let mut of_primitives = vec![NONE; builder.primitives.len()];
     for (number, of_primitive) in of_primitives.iter_mut().enumerate() {
@@ -28,7 +29,7 @@ pub(super) fn collect(scene: &PhysicalScene, builder: &Builder, scatters: &[Scat
         }
     }
     let (parallel, placed): (Vec<_>, Vec<_>) =
-        scene.lights.iter().map(|light| described(&light.kind)).partition(|emitter| emitter.kind == PARALLEL);
+        scene.lights.iter().map(|light| described(&light.kind, origin)).partition(|emitter| emitter.kind == PARALLEL);
     emitters.extend(placed);
     let placed = emitters.len();
     emitters.extend(parallel);
@@ -63,6 +64,7 @@ fn luminous(builder: &Builder, number: usize, scatters: &[Scatter]) -> Option<Em
                 edge1: b - a,
                 edge2: c - a,
                 area: cross.length() * 0.5,
+                slack: builder.corners[index].slack,
                 direction: if direction.dot(mean) < 0.0 { -direction } else { direction },
                 ..base
             }
@@ -70,7 +72,14 @@ fn luminous(builder: &Builder, number: usize, scatters: &[Scatter]) -> Option<Em
         SPHERE => {
             let sphere = &builder.spheres[index];
             let area = 4.0 * std::f32::consts::PI * sphere.radius * sphere.radius;
-            Emitter { kind: SPHERE_LIGHT, position: sphere.center, radius: sphere.radius, area, ..base }
+            Emitter {
+                kind: SPHERE_LIGHT,
+                position: sphere.center,
+                radius: sphere.radius,
+                area,
+                slack: sphere_slack(sphere.radius),
+                ..base
+            }
         }
         _ => {
             let square = &builder.squares[index];
@@ -82,6 +91,7 @@ fn luminous(builder: &Builder, number: usize, scatters: &[Scatter]) -> Option<Em
                 edge2,
                 area: 4.0 * square.half_width * square.half_height,
                 direction: square.normal,
+                slack: square_slack(square.center + (edge1.abs() + edge2.abs()) * 0.5, square),
                 ..base
             }
         }
@@ -89,13 +99,16 @@ fn luminous(builder: &Builder, number: usize, scatters: &[Scatter]) -> Option<Em
     (emitter.area > 0.0).then_some(emitter)
 }
 
-fn described(kind: &EmitterKind) -> Emitter {
+fn described(kind: &EmitterKind, origin: DVec3) -> Emitter {
+    let relative = |position: DVec3| (position - origin).as_vec3();
     let base = Emitter { primitive: NONE, image: NONE, ..Emitter::zeroed() };
     match *kind {
-        EmitterKind::Point { position, intensity } => Emitter { kind: POINT, position, color: intensity, ..base },
+        EmitterKind::Point { position, intensity } => {
+            Emitter { kind: POINT, position: relative(position), color: intensity, ..base }
+        }
         EmitterKind::Spot { position, direction, intensity, inner_degrees, outer_degrees } => Emitter {
             kind: SPOT,
-            position,
+            position: relative(position),
             direction: normalize_or_zero(direction),
             color: intensity,
             cos_inner: inner_degrees.to_radians().cos(),

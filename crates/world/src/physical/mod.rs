@@ -3,17 +3,21 @@
 mod emitter_tree;
 mod emitters;
 mod environment;
+mod faces;
 mod images;
+mod middle;
 mod scatters;
+mod ties;
 
 pub use environment::StoredEnvironment;
+pub use faces::Face;
+pub use ties::{Tied, Ties};
 
 use crate::lights::Square as SquareFrame;
 use crate::mesh::AffinePlacement;
 use crate::shapes::Builder;
 use crate::{Defect, MAX_PRIMITIVES, Shapes, WorldError};
-use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{DAffine3, DVec3, Vec3};
 use lightcuts_kernel::emitter::Emitter;
 use lightcuts_kernel::emitter_tree::EmitterNode;
 use lightcuts_kernel::environment::EnvironmentMap;
@@ -22,20 +26,6 @@ use lightcuts_kernel::mip::MipImage;
 use lightcuts_kernel::ray::{NONE, normalize_or_zero};
 use lightcuts_kernel::scatter::{Images, Scatter};
 use lightcuts_scene::physical::{PhysicalCamera, PhysicalScene, PhysicalShape, SurfaceId, View};
-
-/// A triangle's plane. 32 bytes.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct Face {
-    /// Unit normal about which the corners run counterclockwise; zero where the triangle has no area.
-    pub normal: Vec3,
-    /// Texture coordinates per scene unit: the root of the ratio of both areas.
-    pub texture_density: f32,
-    /// Unit direction in which u grows; zero where the triangle has no area in the texture.
-    pub tangent: Vec3,
-    /// Unused.
-    pub padding: f32,
-}
 
 /// Everything that rendering with the physical model reads, as flat slices. Immutable once made.
 #[derive(Debug, Clone)]
@@ -64,7 +54,11 @@ pub struct PhysicalWorld {
     pub primitive_emitters: Vec<u32>,
     /// Light from infinitely far away.
     pub environment: Option<StoredEnvironment>,
-    /// Corners of a box around everything; both zero where there is nothing.
+    /// Emissive surfaces in one place with others.
+    pub ties: Ties,
+    /// The place in the scene that is this world's origin: all else is relative to it.
+    pub origin: DVec3,
+    /// Corners of a box around everything, relative to the origin; both zero where there is nothing.
     pub bounds: (Vec3, Vec3),
     /// Whether any material is there in parts only.
     pub has_masks: bool,
@@ -77,22 +71,25 @@ impl PhysicalWorld {
         if let Some(issue) = scene.validate().into_iter().next() {
             return Err(WorldError::Scene(issue));
         }
-        let builder = add_objects(scene);
+        let origin = middle::middle(scene);
+        let mut builder = add_objects(scene, origin);
         if builder.primitives.len() > MAX_PRIMITIVES {
             return Err(WorldError::TooLarge(builder.primitives.len()));
         }
         let (images, words) = images::pack(&scene.images);
         let (scatters, tables) = scatters::flatten(&scene.materials);
         let of_images = Images { images: &images, words: &words };
-        let lights = emitters::collect(scene, &builder, &scatters);
+        let faces = faces::faces(&mut builder);
+        let lights = emitters::collect(scene, origin, &builder, &scatters);
         let tree = emitter_tree::build(&lights.emitters[..lights.placed], &of_images);
         let all = builder.boxes.iter().copied().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-        let reach = scene.camera.position.abs().max_element();
-        let faces = faces(&builder);
-        let world = Self {
+        let position = (scene.camera.position - origin).as_vec3();
+        let extent = all.map_or(0.0, |(lower, upper): (Vec3, Vec3)| (upper - lower).length());
+        faces::overlap(&mut builder, extent);
+        let mut world = Self {
             faces,
             has_masks: scatters.iter().any(|scatter| scatter.mask_image != NONE),
-            shapes: builder.finish(reach),
+            shapes: builder.finish(position.abs().max_element()),
             scatters,
             tables,
             environment: scene.environment.as_ref().map(|of| StoredEnvironment::new(of, &scene.images)),
@@ -103,11 +100,23 @@ impl PhysicalWorld {
             emitter_nodes: tree.nodes,
             emitter_leaves: tree.leaves,
             primitive_emitters: lights.of_primitives,
+            ties: Ties::default(),
+            origin,
             bounds: all.unwrap_or_default(),
             camera: scene.camera.clone(),
         };
+        world.settle_ties();
         debug_assert_eq!(world.validate(), Ok(()));
         Ok(world)
+    }
+
+    /// Corners of a box around everything, in the scene's coordinates; both zero where there is nothing.
+    pub fn scene_bounds(&self) -> (DVec3, DVec3) {
+        let (lower, upper) = self.bounds;
+        if self.shapes.primitives.is_empty() {
+            return (DVec3::ZERO, DVec3::ZERO);
+        }
+        (lower.as_dvec3() + self.origin, upper.as_dvec3() + self.origin)
     }
 
     /// All images.
@@ -130,7 +139,7 @@ impl PhysicalWorld {
             View::Orthographic { height } => (height / 2.0, 1),
         };
         Lens {
-            position: camera.position,
+            position: (camera.position - self.origin).as_vec3(),
             half_height,
             forward,
             near: camera.near,
@@ -165,41 +174,27 @@ impl PhysicalWorld {
     }
 }
 
-fn add_objects(scene: &PhysicalScene) -> Builder {
+fn add_objects(scene: &PhysicalScene, origin: DVec3) -> Builder {
     let mut builder = Builder::default();
     for object in &scene.objects {
         builder.begin_object();
         let material = object.material.0;
         match object.shape {
-            PhysicalShape::Sphere { center, radius } => builder.add_sphere(center, radius, material),
+            PhysicalShape::Sphere { center, radius } => {
+                builder.add_sphere((center - origin).as_vec3(), radius, material);
+            }
             PhysicalShape::Rectangle { center, normal, head, width, height } => {
+                let center = (center - origin).as_vec3();
                 builder.add_square(&SquareFrame::new(center, normal, head, width, height), material);
             }
             PhysicalShape::Mesh { mesh, placement, smooth, override_material } => {
                 let of_face = |own: Option<SurfaceId>| own.filter(|_| !override_material).map_or(material, |own| own.0);
-                let placement = AffinePlacement::new(placement);
+                let placement = AffinePlacement::new(DAffine3::from_translation(-origin) * placement);
                 builder.add_mesh(&scene.meshes[mesh.0 as usize], &placement, smooth, of_face);
             }
         }
     }
     builder
-}
-
-fn faces(builder: &Builder) -> Vec<Face> {
-    let of = |(points, corners): (&[Vec3; 3], &lightcuts_kernel::surface::TriangleCorners)| {
-        let cross = (points[1] - points[0]).cross(points[2] - points[0]);
-        let [a, b, c] = corners.texture_coordinates;
-        let in_texture = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-        let area = cross.length().max(f32::MIN_POSITIVE);
-        // Corner normals stay on their side where a placement mirrors; the plane's goes with them.
-        let normal = normalize_or_zero(cross);
-        let mean = corners.normals[0] + corners.normals[1] + corners.normals[2];
-        let normal = if normal.dot(mean) < 0.0 { -normal } else { normal };
-        let along_u = (points[1] - points[0]) * (c[1] - a[1]) - (points[2] - points[0]) * (b[1] - a[1]);
-        let tangent = normalize_or_zero(along_u * in_texture.signum());
-        Face { normal, texture_density: (in_texture.abs() / area).sqrt(), tangent, padding: 0.0 }
-    };
-    builder.points.iter().zip(&builder.corners).map(of).collect()
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ pub(crate) fn layouts() -> Vec<Layout> {
         CompressedNode { words }
         LeafItem { a, primitive, b, kind, c, index }
         Primitive { kind, index, object, material }
-        TriangleCorners { normals, texture_coordinates, padding }
+        TriangleCorners { normals, texture_coordinates, slack }
         Camera { center, pitch, view, eye_distance, right, width, up, height }
         Material {
             specular, exponent, diffuse, reflection, ambient, refraction, glow, refraction_ratio,

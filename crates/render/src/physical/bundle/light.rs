@@ -5,7 +5,8 @@ use super::vectors::{Wide3, add, divided, dot, loaded, product, scaled, splat3, 
 use crate::cpu::{Lanes, RayLanes};
 use crate::physical::pass::Counts;
 use glam::Vec3;
-use lightcuts_kernel::ray::{NONE, RELATIVE_EPSILON};
+use lightcuts_kernel::ray::NONE;
+use lightcuts_kernel::rounding::{APPROACH, REACH};
 use lightcuts_kernel::virtual_light::{VirtualLight, shading_normal, virtual_emission};
 use lightcuts_world::bvh::LANES;
 
@@ -20,7 +21,7 @@ impl Bundle<'_> {
             return [zero; 3];
         }
         counts.shadow += u64::from(asked.count_ones());
-        let visible = L::mask(self.visible::<L>(light.position, asked));
+        let visible = L::mask(self.visible::<L>(light, asked));
         [sent[0].and(visible), sent[1].and(visible), sent[2].and(visible)]
     }
 
@@ -66,25 +67,22 @@ impl Bundle<'_> {
 
     /// Which of the points in `asked`, a bit each, see a place; twin of `Interaction::ray_to`.
     #[inline(always)]
-    fn visible<L: Lanes>(&self, target: Vec3, asked: u32) -> u32 {
-        // Lights are off their surface already.
-        let target_epsilon = RELATIVE_EPSILON * target.abs().max_element();
+    fn visible<L: Lanes>(&self, light: &VirtualLight, asked: u32) -> u32 {
         let scene = self.receivers[0].scene;
         if scene.world.has_masks {
             let is_free = |lane: &usize| {
-                asked >> lane & 1 == 1 && scene.is_free(&self.receivers[*lane].at.ray_to(target, target_epsilon))
+                asked >> lane & 1 == 1 && scene.is_free(&self.receivers[*lane].at.ray_to(light.position, light.normal))
             };
             return (0..self.count).filter(is_free).fold(0, |bits, lane| bits | 1 << lane);
         }
-        let (point, face, epsilon) = (loaded(&self.point), loaded(&self.face), L::load(&self.epsilon));
-        let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let is_behind = zero.greater(dot(face, sub(splat3(target), point)));
-        let side = L::select(is_behind, zero - epsilon, epsilon);
-        let origin = add(point, scaled(face, side));
-        let direction = sub(splat3(target), origin);
-        let length = dot(direction, direction).sqrt().max(L::splat(f32::MIN_POSITIVE));
-        let end = one - L::splat(2.0) * (epsilon + L::splat(target_epsilon)) / length;
-        let rays = RayLanes { origin: stored(origin), direction: stored(direction), t_max: end.max(zero).store() };
+        let place = splat3(light.position);
+        let way: Wide3<L> = sub(place, loaded(&self.point));
+        let is_behind = L::splat(0.0).greater(dot(loaded(&self.face), way));
+        let (front, back): (Wide3<L>, Wide3<L>) = (loaded(&self.front), loaded(&self.back));
+        let origin: Wide3<L> = std::array::from_fn(|axis| L::select(is_behind, back[axis], front[axis]));
+        let rise = dot(way, way).sqrt() * L::splat(APPROACH);
+        let direction = sub(add(place, scaled(splat3(light.normal), rise)), origin);
+        let rays = RayLanes { origin: stored(origin), direction: stored(direction), t_max: [REACH; LANES] };
         asked & !scene.occluded_lanes(&rays, asked)
     }
 }

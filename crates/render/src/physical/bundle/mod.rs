@@ -33,7 +33,9 @@ pub(crate) struct Bundle<'a> {
     is_lambert: bool,
     point: Vectors,
     face: Vectors,
-    epsilon: [f32; LANES],
+    /// Where rays begin that go to the viewer's side, and those that go behind.
+    front: Vectors,
+    back: Vectors,
     /// Normals and what is across them.
     normals: Frames,
     /// BSDF and factor on it, of Lambert's material.
@@ -76,7 +78,8 @@ impl<'a> Bundle<'a> {
             is_lambert: receivers.iter().all(|receiver| Self::is_lambert(receiver.at)),
             point: vectors(&|receiver| receiver.at.point),
             face: vectors(&|receiver| receiver.at.face * side(receiver)),
-            epsilon: each(&|receiver| receiver.at.epsilon),
+            front: vectors(&|receiver| receiver.at.point + receiver.at.lift),
+            back: vectors(&|receiver| receiver.at.point - receiver.at.face * (side(receiver) * receiver.at.epsilon)),
             normals: frames(&|receiver| receiver.bound.normal),
             color: vectors(&|receiver| receiver.at.bsdf.diffuse * (1.0 / PI) * receiver.matt),
             even: each(&|receiver| receiver.bound.bsdf.even),

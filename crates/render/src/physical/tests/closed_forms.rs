@@ -29,7 +29,7 @@ fn white_furnace() {
     ] {
         let scene = PhysicalScene {
             camera: looking(Vec3::Z * 4.0, Vec3::ZERO, 20.0),
-            objects: vec![object(PhysicalShape::Sphere { center: Vec3::ZERO, radius: 1.0 }, 0)],
+            objects: vec![object(PhysicalShape::Sphere { center: glam::DVec3::ZERO, radius: 1.0 }, 0)],
             materials: vec![
                 SurfaceDesc { scattering, ..SurfaceDesc::default() },
                 matt(Vec3::ONE),
@@ -115,7 +115,7 @@ fn two_parallel_plates() {
     let scene = PhysicalScene {
         camera: PhysicalCamera {
             // From above the lamp, which does not hide what is behind it: rays begin below it.
-            position: Vec3::Y * 2.0,
+            position: glam::DVec3::Y * 2.0,
             direction: Vec3::NEG_Y,
             up: Vec3::Z,
             view: View::Orthographic { height: 1.0 },
@@ -142,7 +142,7 @@ fn a_light_in_a_matt_sphere() {
     let albedo = 0.6;
     let scene = PhysicalScene {
         camera: looking(Vec3::new(0.0, 0.0, 0.5), Vec3::new(0.0, 0.3, -2.0), 60.0),
-        objects: vec![object(PhysicalShape::Sphere { center: Vec3::ZERO, radius: 2.0 }, 0)],
+        objects: vec![object(PhysicalShape::Sphere { center: glam::DVec3::ZERO, radius: 2.0 }, 0)],
         materials: vec![matt(Vec3::splat(albedo))],
         lights: vec![point(Vec3::ZERO, Vec3::ONE)],
         ..PhysicalScene::default()

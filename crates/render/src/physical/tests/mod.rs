@@ -2,5 +2,7 @@
 
 mod agreement;
 mod closed_forms;
+mod geometry;
+mod mapping;
 mod oracle;
 mod scenes;

@@ -4,7 +4,7 @@ use crate::cpu::Simd;
 use crate::monitor::Unwatched;
 use crate::physical::{PhysicalRendering, render_physical};
 use crate::settings::{Integrator, Settings};
-use glam::{Affine3A, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 use lightcuts_scene::physical::{
     EmissionDesc, EmitterDesc, EmitterKind, EnvironmentDesc, ImageId, PhysicalCamera, PhysicalObject, PhysicalScene,
     PhysicalShape, PixelImage, Pixels, Scattering, SurfaceDesc, SurfaceId, Tint, View,
@@ -24,7 +24,7 @@ pub(super) fn rectangle(
     height: f32,
     material: u32,
 ) -> PhysicalObject {
-    object(PhysicalShape::Rectangle { center, normal, head, width, height }, material)
+    object(PhysicalShape::Rectangle { center: center.as_dvec3(), normal, head, width, height }, material)
 }
 
 pub(super) fn matt(albedo: Vec3) -> SurfaceDesc {
@@ -37,19 +37,24 @@ pub(super) fn light(radiance: Vec3) -> SurfaceDesc {
 }
 
 pub(super) fn point(position: Vec3, intensity: Vec3) -> EmitterDesc {
-    EmitterDesc { kind: EmitterKind::Point { position, intensity }, location: Location::default() }
+    EmitterDesc { kind: EmitterKind::Point { position: position.as_dvec3(), intensity }, location: Location::default() }
 }
 
 /// Shines down, evenly within 40 degrees.
 pub(super) fn spot_down(position: Vec3, intensity: Vec3) -> EmitterDesc {
-    let kind =
-        EmitterKind::Spot { position, direction: Vec3::NEG_Y, intensity, inner_degrees: 40.0, outer_degrees: 45.0 };
+    let kind = EmitterKind::Spot {
+        position: position.as_dvec3(),
+        direction: Vec3::NEG_Y,
+        intensity,
+        inner_degrees: 40.0,
+        outer_degrees: 45.0,
+    };
     EmitterDesc { kind, location: Location::default() }
 }
 
 pub(super) fn looking(position: Vec3, target: Vec3, degrees: f32) -> PhysicalCamera {
     PhysicalCamera {
-        position,
+        position: position.as_dvec3(),
         direction: target - position,
         up: if (target - position).normalize().y.abs() > 0.99 { Vec3::Z } else { Vec3::Y },
         view: View::Perspective { degrees },
@@ -98,12 +103,12 @@ pub(super) fn room(occluded: bool) -> PhysicalScene {
         rectangle(Vec3::new(0.0, 0.5, 0.5), Vec3::X, Vec3::Y, 1.0, 1.0, 1),
         rectangle(Vec3::new(1.0, 0.5, 0.5), Vec3::NEG_X, Vec3::Y, 1.0, 1.0, 2),
         rectangle(Vec3::new(0.5, lamp, 0.5), lamp_normal, Vec3::Z, 0.3, 0.3, 3),
-        object(PhysicalShape::Sphere { center: Vec3::new(0.7, 0.2, 0.6), radius: 0.2 }, 4),
+        object(PhysicalShape::Sphere { center: DVec3::new(0.7, 0.2, 0.6), radius: 0.2 }, 4),
     ];
     if occluded {
         objects.push(rectangle(Vec3::new(0.5, lamp - 0.01, 0.5), Vec3::NEG_Y, Vec3::Z, 0.34, 0.34, 0));
     }
-    let turned = Affine3A::from_translation(Vec3::new(0.3, 0.0, 0.35)) * Affine3A::from_rotation_y(0.3);
+    let turned = DAffine3::from_translation(DVec3::new(0.3, 0.0, 0.35)) * DAffine3::from_rotation_y(0.3);
     objects.push(object(
         PhysicalShape::Mesh { mesh: MeshId(0), placement: turned, smooth: false, override_material: true },
         0,
@@ -182,7 +187,7 @@ pub(super) fn variants() -> Vec<(&'static str, PhysicalScene)> {
     many.objects.extend((0..60).map(|k| {
         let [x, y, z, _] = lightcuts_kernel::rng::random4(k, 0, 0, 4);
         let center = Vec3::new(0.1 + 0.8 * x, 0.65 + 0.3 * y, 0.1 + 0.8 * z);
-        object(PhysicalShape::Sphere { center, radius: 0.012 }, 3)
+        object(PhysicalShape::Sphere { center: center.as_dvec3(), radius: 0.012 }, 3)
     }));
     vec![
         ("open", room(false)),
@@ -216,15 +221,52 @@ pub(super) fn caustic_room() -> PhysicalScene {
 /// A scene `k` times as large, in every length.
 pub(super) fn scaled(scene: &PhysicalScene, k: f32) -> PhysicalScene {
     let mut large = scene.clone();
-    large.camera.position *= k;
+    let far = f64::from(k);
+    large.camera.position *= far;
     for object in &mut large.objects {
         match &mut object.shape {
-            PhysicalShape::Sphere { center, radius } => (*center, *radius) = (*center * k, *radius * k),
+            PhysicalShape::Sphere { center, radius } => (*center, *radius) = (*center * far, *radius * k),
             PhysicalShape::Rectangle { center, width, height, .. } => {
-                (*center, *width, *height) = (*center * k, *width * k, *height * k);
+                (*center, *width, *height) = (*center * far, *width * k, *height * k);
             }
-            PhysicalShape::Mesh { placement, .. } => *placement = Affine3A::from_scale(Vec3::splat(k)) * *placement,
+            PhysicalShape::Mesh { placement, .. } => *placement = DAffine3::from_scale(DVec3::splat(far)) * *placement,
         }
     }
     large
+}
+
+/// A scene moved as a whole.
+pub(super) fn moved(scene: &PhysicalScene, shift: DVec3) -> PhysicalScene {
+    let mut far = scene.clone();
+    far.camera.position += shift;
+    for object in &mut far.objects {
+        match &mut object.shape {
+            PhysicalShape::Sphere { center, .. } | PhysicalShape::Rectangle { center, .. } => *center += shift,
+            PhysicalShape::Mesh { placement, .. } => *placement = DAffine3::from_translation(shift) * *placement,
+        }
+    }
+    for light in &mut far.lights {
+        match &mut light.kind {
+            EmitterKind::Point { position, .. } | EmitterKind::Spot { position, .. } => *position += shift,
+            EmitterKind::Directional { .. } => {}
+        }
+    }
+    far
+}
+
+/// A rectangle of two triangles, and its instance.
+pub(super) fn quad(center: Vec3, right: Vec3, up: Vec3) -> MeshDesc {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let triangle =
+        |of: [u32; 3]| MeshTriangle { positions: of, normals: None, texture_coordinates: Some(of), material: None };
+    MeshDesc {
+        positions: corners.map(|[u, v]: [f32; 2]| center + right * (u - 0.5) + up * (v - 0.5)).to_vec(),
+        texture_coordinates: corners.to_vec(),
+        triangles: vec![triangle([0, 1, 2]), triangle([0, 2, 3])],
+        ..MeshDesc::default()
+    }
+}
+
+pub(super) fn instance(mesh: u32, placement: DAffine3, material: u32) -> PhysicalObject {
+    object(PhysicalShape::Mesh { mesh: MeshId(mesh), placement, smooth: true, override_material: true }, material)
 }

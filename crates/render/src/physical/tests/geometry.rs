@@ -1,0 +1,255 @@
+//! Where a scene lies, how large it is and what its surfaces share with others does not change its picture.
+
+use super::scenes::{
+    caustic_room, instance, light, looking, matt, mean, moved, object, point, quad, rectangle, render, room, scaled,
+    settings,
+};
+use crate::settings::{Integrator, Strategy};
+use glam::{DAffine3, DQuat, DVec3, EulerRot, Vec3};
+use lightcuts_kernel::rng::random4;
+use lightcuts_scene::Location;
+use lightcuts_scene::physical::{EnvironmentDesc, PhysicalCamera, PhysicalObject, PhysicalScene, PhysicalShape, View};
+
+const BOTH: [Integrator; 2] = [Integrator::Path, Integrator::Lightcuts];
+
+fn direction(k: u32) -> Vec3 {
+    let [x, y, z, _] = random4(k, 0, 0, 61);
+    (Vec3::new(x, y, z) - 0.5).normalize()
+}
+
+/// The room and its mirrors as far away as 1e6, at 1e-3 to 1e3 of their size: what rounding changes is single paths.
+#[test]
+fn moved_scenes_look_the_same() {
+    for (name, scene) in [("room", room(false)), ("behind a shade", room(true)), ("mirrors", caustic_room())] {
+        for integrator in BOTH {
+            let settings = settings(integrator, 24, 12);
+            let here = render(&scene, &settings);
+            for k in 0..4 {
+                let size = [1.0, 1.0, 1e-3, 1e3][k as usize];
+                let shift = direction(k).as_dvec3() * f64::from(size) * 10.0_f64.powi(3 + k as i32);
+                let there = render(&moved(&scaled(&scene, size), shift), &settings);
+                let ratio = (mean(&there) / mean(&here)).to_array();
+                println!("{name}, {integrator:?}, {size} at {shift:.0}: {ratio:.5?}");
+                assert!(ratio.iter().all(|r| (r - 1.0).abs() < 0.01), "{name}, {integrator:?}, {shift}: {ratio:?}");
+                let is_lit = |p: &[f32; 3]| Vec3::from(*p).max_element() > 0.0;
+                let lit = [&here, &there].map(|of| of.beauty.pixels().iter().filter(|p| is_lit(p)).count());
+                assert_eq!(lit[0], lit[1], "{name}, {integrator:?}, {shift}: pixels turn black");
+            }
+        }
+    }
+}
+
+/// Ground of albedo 1/2 under even light is half as bright, whatever its radius; the ball on it darkens what is near.
+#[test]
+fn large_spheres_have_no_bands() {
+    for radius in [1e2_f32, 1e3, 1e4, 1e5] {
+        let ball = |height: f64, radius| object(PhysicalShape::Sphere { center: DVec3::Y * height, radius }, 0);
+        let scene = PhysicalScene {
+            camera: looking(Vec3::new(0.0, 2.0, 6.0), Vec3::new(0.0, 0.5, 0.0), 35.0),
+            objects: vec![ball(-f64::from(radius), radius), ball(0.5, 0.5)],
+            materials: vec![matt(Vec3::splat(0.5))],
+            environment: Some(sky(0.5)),
+            ..PhysicalScene::default()
+        };
+        let rendering = render(&scene, &settings(Integrator::Path, 48, 32));
+        let green: Vec<f32> = rendering.beauty.pixels().iter().map(|p| p[1]).collect();
+        let darkest = green.iter().copied().fold(f32::INFINITY, f32::min);
+        let near = green[48 * 44..].iter().sum::<f32>() / (48.0 * 4.0);
+        println!("radius {radius}: darkest {darkest:.4}, away from the ball {near:.4}");
+        assert!(darkest > 0.03 && (near - 0.25).abs() < 0.004, "radius {radius}: {darkest}, {near}");
+    }
+}
+
+fn sky(radiance: f32) -> EnvironmentDesc {
+    EnvironmentDesc { radiance: Vec3::splat(radiance), image: None, degrees: 0.0, location: Location::default() }
+}
+
+/// Light that is shut in is seen by nobody: boxes of six rectangles and of twelve triangles, turned, thin and far away.
+#[test]
+fn closed_boxes_leak_nothing() {
+    for k in 0..12 {
+        let [a, b, c, d] = random4(k, 0, 0, 62);
+        let turn = DQuat::from_euler(EulerRot::XYZ, f64::from(a) * 6.0, f64::from(b) * 6.0, f64::from(c) * 6.0);
+        let size = DVec3::new(2.0, 0.4 + 1.6 * f64::from(d), 2.0);
+        let placement = DAffine3::from_scale_rotation_translation(size, turn, DVec3::Y * 1.5);
+        let mut scene = PhysicalScene {
+            camera: looking(Vec3::new(4.0, 3.0, 4.0), Vec3::ZERO, 45.0),
+            objects: vec![rectangle(Vec3::NEG_Y, Vec3::Y, Vec3::Z, 20.0, 20.0, 0)],
+            lights: vec![point(Vec3::Y * 1.5, Vec3::splat(100.0))],
+            materials: vec![matt(Vec3::splat(0.8))],
+            ..PhysicalScene::default()
+        };
+        for side in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
+            scene.objects.push(wall(&mut scene.meshes, placement, size, side, k.is_multiple_of(2)));
+        }
+        let far = moved(&scene, direction(k).as_dvec3() * [0.0, 1e3, 1e5][k as usize % 3]);
+        for strategy in [Strategy::Lightcuts, Strategy::All] {
+            let mut settings = settings(Integrator::Lightcuts, 24, 24);
+            settings.gather.strategy = strategy;
+            settings.physical.vpls = if strategy == Strategy::All { 200 } else { 2000 };
+            let brightest = render(&far, &settings).beauty.pixels().iter().flatten().copied().fold(0.0, f32::max);
+            assert_eq!(brightest, 0.0, "box {k}, {strategy:?}");
+        }
+    }
+}
+
+/// A side of the unit cube, placed: a rectangle, or two triangles.
+fn wall(
+    meshes: &mut Vec<lightcuts_scene::MeshDesc>,
+    placement: DAffine3,
+    size: DVec3,
+    side: Vec3,
+    is_mesh: bool,
+) -> PhysicalObject {
+    let up = if side.y == 0.0 { Vec3::Y } else { Vec3::Z };
+    let right = up.cross(side);
+    if is_mesh {
+        meshes.push(quad(side * 0.5, right, up));
+        return instance(meshes.len() as u32 - 1, placement, 0);
+    }
+    let turned = |v: Vec3| placement.transform_vector3(v.as_dvec3()).normalize().as_vec3();
+    let (width, height) = (size.dot(right.abs().as_dvec3()) as f32, size.dot(up.abs().as_dvec3()) as f32);
+    let center = placement.transform_point3(side.as_dvec3() * 0.5);
+    object(PhysicalShape::Rectangle { center, normal: turned(side), head: turned(up), width, height }, 0)
+}
+
+/// Light of a square lamp of edge 2 and radiance 4, 2 above a floor of albedo 1/2, right below its middle.
+fn closed_form() -> f64 {
+    let n = 400;
+    let step = 2.0 / f64::from(n);
+    let of = |i: i32, j: i32| {
+        let (x, y) = ((f64::from(i) + 0.5) * step - 1.0, (f64::from(j) + 0.5) * step - 1.0);
+        // Cosines 2 / d at both ends, over d^2.
+        4.0 / (x * x + y * y + 4.0).powi(2)
+    };
+    let sum: f64 = (0..n).flat_map(|i| (0..n).map(move |j| of(i, j))).sum();
+    4.0 * 0.5 / std::f64::consts::PI * sum * step * step
+}
+
+/// Seen from between: only the floor.
+fn camera() -> PhysicalCamera {
+    PhysicalCamera {
+        position: DVec3::Y,
+        direction: Vec3::NEG_Y,
+        up: Vec3::NEG_Z,
+        view: View::Orthographic { height: 0.02 },
+        ..PhysicalCamera::default()
+    }
+}
+
+/// A lamp in one plane with other surfaces shines as if it were alone, of all integrators, in every order, form and turn.
+#[test]
+fn lamps_in_one_plane_with_others_shine_once() {
+    const FLOOR: u32 = 0;
+    const BLACK: u32 = 1;
+    const LAMP: u32 = 2;
+    let exact = closed_form();
+    let ceiling = |is_mesh: bool, meshes: &mut Vec<_>, size: f32, material| {
+        if is_mesh {
+            meshes.push(quad(Vec3::Y * 2.0, Vec3::X * size, Vec3::Z * size));
+            return instance(meshes.len() as u32 - 1, DAffine3::IDENTITY, material);
+        }
+        rectangle(Vec3::Y * 2.0, Vec3::NEG_Y, Vec3::Z, size, size, material)
+    };
+    for k in 0..32 {
+        let mut meshes = Vec::new();
+        let mut objects = vec![rectangle(Vec3::ZERO, Vec3::Y, Vec3::Z, 0.5, 0.5, FLOOR)];
+        let mut others = vec![
+            ceiling(k & 1 != 0, &mut meshes, 2.0, LAMP),
+            ceiling(
+                k & 2 != 0,
+                &mut meshes,
+                if k & 16 != 0 { 2.0 } else { 6.0 },
+                if k & 4 != 0 { LAMP } else { BLACK },
+            ),
+        ];
+        if k & 4 != 0 && k & 16 == 0 {
+            // Both shine, one as large as the other.
+            others[1] = ceiling(k & 2 != 0, &mut meshes, 2.0, LAMP);
+        }
+        if k & 8 != 0 {
+            others.reverse();
+        }
+        objects.extend(others);
+        let scene = PhysicalScene {
+            camera: camera(),
+            objects,
+            meshes,
+            materials: vec![matt(Vec3::splat(0.5)), matt(Vec3::ZERO), light(Vec3::splat(4.0))],
+            ..PhysicalScene::default()
+        };
+        let turned = turned(&scene, k);
+        for integrator in BOTH {
+            let seen = mean(&render(&turned, &settings(integrator, 12, 64))).x;
+            assert!((seen / exact - 1.0).abs() < 0.02, "{k}, {integrator:?}: {seen:.4} of {exact:.4}");
+        }
+    }
+}
+
+/// A scene turned about a slant axis and moved: coordinates are no round numbers any more.
+fn turned(scene: &PhysicalScene, k: u32) -> PhysicalScene {
+    let placement = DAffine3::from_rotation_translation(
+        DQuat::from_axis_angle(direction(k).as_dvec3(), f64::from(k)),
+        direction(k + 100).as_dvec3() * [0.0, 3.0, 1e3, 1e5][k as usize % 4],
+    );
+    let vector = |v: Vec3| placement.transform_vector3(v.as_dvec3()).as_vec3();
+    let mut turned = scene.clone();
+    let camera = &mut turned.camera;
+    camera.position = placement.transform_point3(camera.position);
+    (camera.direction, camera.up) = (vector(camera.direction), vector(camera.up));
+    for object in &mut turned.objects {
+        match &mut object.shape {
+            PhysicalShape::Sphere { center, .. } => *center = placement.transform_point3(*center),
+            PhysicalShape::Rectangle { center, normal, head, .. } => {
+                *center = placement.transform_point3(*center);
+                (*normal, *head) = (vector(*normal), vector(*head));
+            }
+            PhysicalShape::Mesh { placement: own, .. } => *own = placement * *own,
+        }
+    }
+    turned
+}
+
+/// Two lamps back to back in one plane shine one to each side.
+#[test]
+fn lamps_back_to_back_shine_to_both_sides() {
+    for order in 0..2 {
+        let lamp = |normal| rectangle(Vec3::Y * 2.0, normal, Vec3::Z, 2.0, 2.0, 1);
+        let mut lamps = vec![lamp(Vec3::Y), lamp(Vec3::NEG_Y)];
+        if order == 1 {
+            lamps.reverse();
+        }
+        lamps.push(rectangle(Vec3::ZERO, Vec3::Y, Vec3::Z, 0.5, 0.5, 0));
+        let scene = PhysicalScene {
+            camera: camera(),
+            objects: lamps,
+            materials: vec![matt(Vec3::splat(0.5)), light(Vec3::splat(4.0))],
+            ..PhysicalScene::default()
+        };
+        for integrator in BOTH {
+            let seen = mean(&render(&scene, &settings(integrator, 12, 64))).x;
+            assert!((seen / closed_form() - 1.0).abs() < 0.02, "{order}, {integrator:?}: {seen}");
+        }
+    }
+}
+
+/// The same emissive sphere twice is one.
+#[test]
+fn a_sphere_that_is_there_twice_shines_once() {
+    let sphere = || object(PhysicalShape::Sphere { center: DVec3::Y * 2.0, radius: 0.5 }, 1);
+    let floor = rectangle(Vec3::ZERO, Vec3::Y, Vec3::Z, 0.5, 0.5, 0);
+    let scene = |objects| PhysicalScene {
+        camera: camera(),
+        objects,
+        materials: vec![matt(Vec3::splat(0.5)), light(Vec3::splat(4.0))],
+        ..PhysicalScene::default()
+    };
+    // pi sin^2 of the half angle, times radiance and albedo over pi.
+    let exact = 4.0 * 0.5 * 0.0625;
+    for objects in [vec![floor.clone(), sphere()], vec![sphere(), floor.clone(), sphere()]] {
+        for integrator in BOTH {
+            let seen = mean(&render(&scene(objects.clone()), &settings(integrator, 12, 64))).x;
+            assert!((seen / exact - 1.0).abs() < 0.02, "{integrator:?}: {seen} of {exact}");
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Emissive surfaces that lie in one place with others: a lamp flush with the ceiling, the same face twice.
+//!
+//! Rounding alone would decide which of them a ray meets, while light that is drawn from an emitter stops short of all of them and
+//! so would count each. Both go by one rule, for which the ties are listed here: of surfaces in one place the first that shines
+//! towards a ray is met, else the first in file order.
+
+use crate::bvh::{ChildRef, LANES};
+use crate::{Shapes, physical::PhysicalWorld};
+use glam::{DVec2, DVec3, Vec3};
+use lightcuts_kernel::intersect::{Sphere, Square, Triangle};
+use lightcuts_kernel::ray::NONE;
+use lightcuts_kernel::rounding::UNIT;
+
+/// How far surfaces may be apart to count as in one place, relative to the size of the emissive one.
+const RELATIVE_DISTANCE: f64 = 1e-5;
+
+/// The same in roundings of coordinates.
+const ROUNDINGS: f64 = 8.0 * UNIT as f64;
+
+/// Share of the smaller surface that must be in both: neighbours in a mesh share their edges only.
+const LEAST_SHARE: f64 = 1e-4;
+
+/// Which primitives lie in one place with which others.
+#[derive(Debug, Clone, Default)]
+pub struct Ties {
+    /// First of each primitive's `tied`, and their end; empty where nothing is tied.
+    starts: Vec<u32>,
+    tied: Vec<Tied>,
+    /// How far rays begin off a tied primitive, in scene units, so that they are past all of those in its place.
+    slacks: Vec<f32>,
+}
+
+/// A primitive in the place of another one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tied {
+    /// Its number.
+    pub primitive: u32,
+    /// Its form, if it is a triangle; else of no use.
+    pub triangle: Triangle,
+}
+
+impl Ties {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.tied.is_empty()
+    }
+
+    /// The primitives in the place of this one.
+    pub fn of(&self, primitive: u32) -> &[Tied] {
+        if self.tied.is_empty() {
+            return &[];
+        }
+        let [first, end] = [0, 1].map(|k| self.starts[primitive as usize + k] as usize);
+        &self.tied[first..end]
+    }
+
+    /// How far rays begin off this primitive to be past those in its place, in scene units; 0 where there are none.
+    pub fn slack(&self, primitive: u32) -> f32 {
+        if self.tied.is_empty() { 0.0 } else { self.slacks[primitive as usize] }
+    }
+
+    /// Finds the ties of emissive primitives; `emitters` has the light of each primitive, or [`NONE`].
+    fn find(shapes: &Shapes, emitters: &[u32]) -> Self {
+        let mut pairs = Vec::new();
+        let emissive = |primitive: u32| emitters.get(primitive as usize).is_some_and(|&emitter| emitter != NONE);
+        let triangles = shapes.triangles.iter().flat_map(|block| (0..LANES).map(|lane| block.triangle(lane)));
+        let forms = triangles.filter(|triangle| emissive(triangle.primitive)).map(Form::triangle);
+        let forms = forms.chain(shapes.spheres.iter().filter(|sphere| emissive(sphere.primitive)).map(Form::sphere));
+        let forms = forms.chain(shapes.squares.iter().filter(|square| emissive(square.primitive)).map(Form::square));
+        for form in forms {
+            visit(shapes, &form, |other| {
+                if other.primitive != form.primitive && form.is_in_place_of(&other) {
+                    pairs.push((form.primitive, other.tied(), form.tolerance));
+                    pairs.push((other.primitive, form.tied(), form.tolerance));
+                }
+            });
+        }
+        Self::listed(pairs, shapes.primitives.len())
+    }
+
+    /// Lists by primitive; pairs of two emissive ones are there twice.
+    fn listed(mut pairs: Vec<(u32, Tied, f64)>, primitives: usize) -> Self {
+        if pairs.is_empty() {
+            return Self::default();
+        }
+        pairs.sort_by_key(|(primitive, tied, _)| (*primitive, tied.primitive));
+        let mut ties = Self { starts: vec![0; primitives + 1], tied: Vec::new(), slacks: vec![0.0; primitives] };
+        let mut last = None;
+        for (primitive, tied, tolerance) in pairs {
+            let slack = &mut ties.slacks[primitive as usize];
+            *slack = slack.max(2.0 * tolerance as f32);
+            if last != Some((primitive, tied.primitive)) {
+                ties.tied.push(tied);
+                ties.starts[primitive as usize + 1] += 1;
+            }
+            last = Some((primitive, tied.primitive));
+        }
+        for k in 0..primitives {
+            ties.starts[k + 1] += ties.starts[k];
+        }
+        ties
+    }
+}
+
+impl PhysicalWorld {
+    /// Moves the emission of tied emitters past what lies in their place.
+    pub(super) fn settle_ties(&mut self) {
+        self.ties = Ties::find(&self.shapes, &self.primitive_emitters);
+        for emitter in self.emitters.iter_mut().filter(|emitter| emitter.primitive != NONE) {
+            emitter.slack = emitter.slack.max(self.ties.slack(emitter.primitive));
+        }
+    }
+}
+
+/// The form of a primitive, for comparison.
+struct Form {
+    primitive: u32,
+    triangle: Triangle,
+    outline: Outline,
+    tolerance: f64,
+    bounds: (Vec3, Vec3),
+}
+
+enum Outline {
+    /// Corners in order.
+    Flat(Vec<DVec3>),
+    Sphere(Sphere),
+}
+
+impl Form {
+    fn triangle(triangle: Triangle) -> Self {
+        let corner = triangle.corner.as_dvec3();
+        let corners = vec![corner, corner + triangle.edge1.as_dvec3(), corner + triangle.edge2.as_dvec3()];
+        Self::flat(triangle.primitive, triangle, corners)
+    }
+
+    fn square(square: &Square) -> Self {
+        let (center, across, along) = (
+            square.center.as_dvec3(),
+            square.across.as_dvec3() * f64::from(square.half_width),
+            square.along.as_dvec3() * f64::from(square.half_height),
+        );
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let corners = corners.iter().map(|(u, v)| center + across * *u + along * *v).collect();
+        Self::flat(square.primitive, NO_TRIANGLE, corners)
+    }
+
+    fn flat(primitive: u32, triangle: Triangle, corners: Vec<DVec3>) -> Self {
+        let lower = corners.iter().copied().reduce(DVec3::min).unwrap_or_default();
+        let upper = corners.iter().copied().reduce(DVec3::max).unwrap_or_default();
+        let coordinate = lower.abs().max(upper.abs()).max_element();
+        let tolerance = (upper - lower).length() * RELATIVE_DISTANCE + coordinate * ROUNDINGS;
+        let bounds = ((lower - tolerance).as_vec3(), (upper + tolerance).as_vec3());
+        Self { primitive, triangle, outline: Outline::Flat(corners), tolerance, bounds }
+    }
+
+    fn sphere(sphere: &Sphere) -> Self {
+        let coordinate = f64::from(sphere.center.abs().max_element() + sphere.radius);
+        let tolerance = f64::from(sphere.radius) * RELATIVE_DISTANCE + coordinate * ROUNDINGS;
+        let bounds = (sphere.center - sphere.radius, sphere.center + sphere.radius);
+        Self {
+            primitive: sphere.primitive,
+            triangle: NO_TRIANGLE,
+            outline: Outline::Sphere(*sphere),
+            tolerance,
+            bounds,
+        }
+    }
+
+    fn tied(&self) -> Tied {
+        Tied { primitive: self.primitive, triangle: self.triangle }
+    }
+
+    /// Whether a part of this surface lies in another one.
+    fn is_in_place_of(&self, other: &Self) -> bool {
+        match (&self.outline, &other.outline) {
+            (Outline::Sphere(a), Outline::Sphere(b)) => {
+                let off = a.center.as_dvec3().distance(b.center.as_dvec3()) + f64::from((a.radius - b.radius).abs());
+                off <= self.tolerance
+            }
+            (Outline::Flat(a), Outline::Flat(b)) => are_in_one_place(a, b, self.tolerance),
+            _ => false,
+        }
+    }
+}
+
+const NO_TRIANGLE: Triangle =
+    Triangle { corner: Vec3::ZERO, primitive: NONE, edge1: Vec3::ZERO, padding0: 0, edge2: Vec3::ZERO, padding1: 0 };
+
+/// Visits all primitives whose boxes meet that of a form.
+fn visit(shapes: &Shapes, form: &Form, mut report: impl FnMut(Form)) {
+    let mut open: Vec<u32> = if shapes.nodes.is_empty() { Vec::new() } else { vec![0] };
+    while let Some(node) = open.pop() {
+        let node = &shapes.nodes[node as usize];
+        for lane in 0..LANES {
+            let (lower, upper) = node.child_box(lane);
+            if !(lower.cmple(form.bounds.1).all() && upper.cmpge(form.bounds.0).all()) {
+                continue;
+            }
+            match ChildRef::unpack(node.child[lane]) {
+                ChildRef::Node(child) => open.push(child),
+                ChildRef::Sphere(i) => report(Form::sphere(&shapes.spheres[i as usize])),
+                ChildRef::Square(i) => report(Form::square(&shapes.squares[i as usize])),
+                ChildRef::Triangles(i) => {
+                    let block = &shapes.triangles[i as usize];
+                    let there = (0..LANES).map(|lane| block.triangle(lane)).filter(|t| t.primitive != NONE);
+                    there.for_each(|triangle| report(Form::triangle(triangle)));
+                }
+            }
+        }
+    }
+}
+
+/// Whether two convex outlines share an area, and their planes are no farther apart there than `tolerance`.
+fn are_in_one_place(a: &[DVec3], b: &[DVec3], tolerance: f64) -> bool {
+    let Some(normal) = (a[1] - a[0]).cross(a[2] - a[0]).try_normalize() else { return false };
+    let Some(other) = (b[1] - b[0]).cross(b[2] - b[0]).try_normalize() else { return false };
+    let slope = normal.dot(other);
+    if slope.abs() < 0.999 {
+        return false;
+    }
+    let (u, v) = normal.any_orthonormal_pair();
+    let flat = |p: &DVec3| DVec2::new((*p - a[0]).dot(u), (*p - a[0]).dot(v));
+    let (mine, others): (Vec<_>, Vec<_>) = (a.iter().map(flat).collect(), b.iter().map(flat).collect());
+    let shared = clipped(&mine, &others);
+    let least = area(&mine).abs().min(area(&others).abs());
+    if area(&shared).abs() <= least * LEAST_SHARE {
+        return false;
+    }
+    // Where the line across the first plane meets the second one.
+    let off = |p: &DVec2| (other.dot(b[0] - (a[0] + u * p.x + v * p.y)) / slope).abs();
+    shared.iter().map(off).fold(0.0, f64::max) <= tolerance
+}
+
+/// Twice the area, above zero counterclockwise.
+fn area(outline: &[DVec2]) -> f64 {
+    (0..outline.len()).map(|k| outline[k].perp_dot(outline[(k + 1) % outline.len()])).sum()
+}
+
+/// What two convex outlines share (Sutherland & Hodgman 1974).
+fn clipped(outline: &[DVec2], by: &[DVec2]) -> Vec<DVec2> {
+    let side = area(by).signum();
+    let mut rest = outline.to_vec();
+    for k in 0..by.len() {
+        let (from, edge) = (by[k], by[(k + 1) % by.len()] - by[k]);
+        let inside = |p: DVec2| edge.perp_dot(p - from) * side;
+        let mut kept = Vec::with_capacity(rest.len() + 1);
+        for j in 0..rest.len() {
+            let (p, q) = (rest[j], rest[(j + 1) % rest.len()]);
+            let (a, b) = (inside(p), inside(q));
+            if a >= 0.0 {
+                kept.push(p);
+            }
+            if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
+                kept.push(p + (q - p) * (a / (a - b)));
+            }
+        }
+        rest = kept;
+    }
+    rest
+}
