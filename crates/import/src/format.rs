@@ -3,8 +3,14 @@
 use crate::ImportError;
 use std::path::Path;
 
-const OBJ_HELP: &str = "write a scene with a camera, a light and a line such as `O | FRKE{0, 0, 1, 1} | PATH:model.obj | SMTH(1) | \
-                        S{0, 0, 0} | D{0.5, 0.5, 0.5} | A{0, 0, 0} | SH(20)`";
+const OBJ_HELP: &str = "write a scene that names the model: a TOML file with `format = \"lightcuts-scene\"`, `version = 1`, a \
+                        `[camera]`, an `[environment]`, and `[[mesh]]` `name = \"model\"` `file = \"model.obj\"` with `[[object]]` \
+                        `type = \"mesh\"` `mesh = \"model\"`; or a scene of the thesis' model with a line such as \
+                        `O | FRKE{0, 0, 1, 1} | PATH:model.obj | SMTH(1) | S{0, 0, 0} | D{0.5, 0.5, 0.5} | A{0, 0, 0} | SH(20)`";
+
+const PLY_HELP: &str = "write a scene that names the model: a TOML file with `format = \"lightcuts-scene\"`, `version = 1`, a \
+                        `[camera]`, an `[environment]`, a `[[material]]`, and `[[mesh]]` `name = \"model\"` \
+                        `file = \"model.ply\"` with `[[object]]` `type = \"mesh\"` `mesh = \"model\"` `material = \"...\"`";
 
 const TOML_HELP: &str = "render a scene of the physical model as one, or write a scene in the thesis' text format";
 
@@ -70,6 +76,10 @@ pub(crate) fn toml(path: &Path) -> ImportError {
 }
 
 fn unknown(path: &Path, found: &'static str) -> ImportError {
-    let help = found.starts_with("an OBJ").then_some(OBJ_HELP);
+    let help = match found {
+        found if found.starts_with("an OBJ") => Some(OBJ_HELP),
+        "a PLY model" => Some(PLY_HELP),
+        _ => None,
+    };
     ImportError::UnknownFormat { path: path.to_path_buf(), found, help }
 }

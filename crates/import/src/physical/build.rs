@@ -27,13 +27,21 @@ pub(super) struct Builder<'d> {
     pub(super) models: Models,
     pub(super) scene: PhysicalScene,
     pub(super) places: Places<'d>,
+    /// Angle that takes the place of every object's `crease-angle`.
+    pub(super) crease_degrees: Option<f32>,
     /// Materials by name.
     materials: HashMap<String, SurfaceId>,
 }
 
 impl<'d> Builder<'d> {
-    pub(super) fn new(source: &'d Source<'d>, resolver: &'d dyn Resolver, limits: &'d Limits) -> Self {
+    pub(super) fn new(
+        source: &'d Source<'d>,
+        resolver: &'d dyn Resolver,
+        limits: &'d Limits,
+        crease_degrees: Option<f32>,
+    ) -> Self {
         Self {
+            crease_degrees,
             reader: Reader::new(source),
             files: Files::new(resolver, limits),
             images: Images::default(),
@@ -56,6 +64,8 @@ impl<'d> Builder<'d> {
         self.each(&meshes, Self::mesh);
         self.each(&objects, Self::object);
         self.each(&lights, Self::light);
+        // Whatever takes too much memory was reported.
+        let _ = self.smooth_meshes();
         self.view(document);
         self.finish(!objects.is_empty(), !lights.is_empty())
     }

@@ -75,6 +75,7 @@ impl<'d> Builder<'d> {
             "target" => self.reader.required(table, "target", VECTOR)? - position,
             direction => self.reader.required(table, direction, VECTOR)?,
         };
+        self.reader.warn_of_radians(table, "outer");
         Some(EmitterKind::Spot {
             position,
             direction,

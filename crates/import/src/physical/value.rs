@@ -45,7 +45,7 @@ pub(super) const WHOLE: Kind<i64> = Kind { expected: "a whole number such as 1",
 pub(super) const VECTOR: Kind<Vec3> = Kind { expected: "three numbers such as [0, 1, 0]", read: vector };
 pub(super) const COLOR: Kind<Vec3> = Kind { expected: "a number or three such as [0.8, 0.5, 0.2]", read: color };
 pub(super) const FACTORS: Kind<Vec3> = Kind { expected: "a number or three such as [1, 2, 1]", read: color };
-pub(super) const TEXT: Kind<String> = Kind { expected: "a text such as \"name\"", read: text };
+pub(super) const TEXT: Kind<String> = Kind { expected: "a string such as \"name\"", read: text };
 pub(super) const FILE: Kind<String> = Kind { expected: "the name of a file such as \"model.obj\"", read: text };
 pub(super) const MATERIAL: Kind<String> = Kind { expected: "the name of a [[material]]", read: text };
 pub(super) const MESH: Kind<String> = Kind { expected: "the name of a [[mesh]]", read: text };
@@ -75,7 +75,7 @@ impl<'d> Value<'d> {
     /// What it is, for messages.
     pub(super) fn kind(self) -> &'static str {
         match self.content {
-            DeValue::String(_) => "a text",
+            DeValue::String(_) => "a string",
             DeValue::Integer(_) | DeValue::Float(_) => "a number",
             DeValue::Boolean(_) => "true or false",
             DeValue::Datetime(_) => "a date",

@@ -21,7 +21,7 @@ const BODIES: &[(&str, &str)] = &[
     ("[environment]\nrotate = 400", "8:10: `rotate`: degrees is 400; expected a number from -360 to 360"),
     ("[environment]\nradiance = -1", "8:12: `radiance` is [-1, -1, -1]; expected three numbers from 0"),
     // Materials.
-    ("[[material]]\ntype = \"mirror\"", "7:1: `name` is missing; expected a text such as"),
+    ("[[material]]\ntype = \"mirror\"", "7:1: `name` is missing; expected a string such as"),
     ("[[material]]\nname = \"a\"", "7:1: `type` is missing; expected one of `lambert`, `phong`"),
     (
         "[[material]]\nname = \"a\"\ntype = \"lamber\"",
@@ -242,7 +242,7 @@ const CAMERAS: &[(&str, &str)] = &[
         "[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\nnear = inf",
         "6:8: `near` is too large for a 32-bit number",
     ),
-    ("[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\nfov = '40'", "6:7: `fov` is a text; expected a number"),
+    ("[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\nfov = '40'", "6:7: `fov` is a string; expected a number"),
     ("[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\nshutter = 1", "6:1: unknown key `shutter` of the camera"),
 ];
 

@@ -1,5 +1,7 @@
 //! Scenes of the physical model from end to end.
 
+mod geometry;
+mod libraries;
 mod malformed;
 mod models;
 mod schema;
