@@ -11,7 +11,7 @@ pub enum ImportError {
     #[diagnostic(code(lightcuts::import::unreadable))]
     Unreadable(#[from] FileError),
 
-    /// The file is no scene in a known format.
+    /// The file is not a scene in a known format.
     #[error("{}: this is {found}; expected a scene in the thesis' text format (.txt) or in the project's own (.toml)", path.display())]
     #[diagnostic(code(lightcuts::import::unknown_format))]
     UnknownFormat {

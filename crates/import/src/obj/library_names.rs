@@ -3,8 +3,8 @@
 use crate::lines::without_comment;
 
 /// Readings of an `mtllib` line to be tried in order, until the files of one exist: the whole line as one name, names
-/// that end in `.mtl`, single words. `\ ` is a blank that belongs to a name. What follows a ` #` belongs to the name where there is
-/// such a file, else it is a comment.
+/// that end in `.mtl`, single words. `\ ` is a blank that belongs to a name. What follows a ` #` belongs to the name
+/// where there is such a file, else it is a comment.
 pub(crate) fn library_names(line: &str) -> Vec<Vec<String>> {
     let short = without_comment(line).trim_ascii();
     let whole = (short.len() < line.len()).then(|| vec![line.to_owned()]);

@@ -164,7 +164,7 @@ impl Library {
         line.split_once(|c: char| c.is_ascii_whitespace()).map_or("", |(_, value)| value.trim_ascii())
     }
 
-    /// Reads a library. Numbers that are none are errors; all else that is odd is a warning.
+    /// Reads a library. What is not a number where one is expected is an error; everything else that is odd is a warning.
     pub(crate) fn parse(name: &str, text: String, report: &mut Report) -> Self {
         let source = Source::new(name, text);
         let mut parser = Parser {

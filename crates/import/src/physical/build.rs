@@ -97,7 +97,7 @@ impl<'d> Builder<'d> {
         let Some(list) = document.get(key) else { return Vec::new() };
         let tables: Option<Vec<Table<'d>>> = list.items().and_then(|items| items.map(Value::table).collect());
         tables.unwrap_or_else(|| {
-            self.reader.error(list.span(), &format!("`{key}` is no list of tables"), &format!("`[[{key}]]`"));
+            self.reader.error(list.span(), &format!("`{key}` is not a list of tables"), &format!("`[[{key}]]`"));
             Vec::new()
         })
     }
@@ -158,7 +158,7 @@ impl<'d> Builder<'d> {
         let value = document.get(key)?;
         let table = value.table();
         if table.is_none() {
-            self.reader.error(value.span(), &format!("`{key}` is no table"), &format!("`[{key}]`"));
+            self.reader.error(value.span(), &format!("`{key}` is not a table"), &format!("`[{key}]`"));
         }
         table
     }

@@ -30,7 +30,7 @@ pub(super) struct Table<'d> {
     end: usize,
 }
 
-/// The document of a text. Fails for a text that is no TOML, too long, or no scene.
+/// The document of a text. Fails for a text that is not TOML, too long, or not a scene.
 pub(super) fn parse<'d>(source: &'d Source<'d>, limits: &Limits) -> Result<Spanned<DeTable<'d>>, ImportError> {
     let text = source.text();
     if text.len() as u64 > limits.document_bytes {
@@ -57,8 +57,10 @@ fn check_header(source: &Source<'_>, document: &Spanned<DeTable<'_>>) -> Result<
                 let shown = if value.items().is_some() { format!("[[{key}]]") } else { format!("[{key}]") };
                 format!("there is a `{shown}`, as in a scene, but the key `format` is missing")
             }
-            None => "this is no scene: the key `format` is missing (a job file names its scene with the key `scene`)"
-                .to_owned(),
+            None => {
+                "this is not a scene: the key `format` is missing (a job file names its scene with the key `scene`)"
+                    .to_owned()
+            }
         };
         return Err(source.fault(0..0, &message).expected(HEADER_EXAMPLE).into());
     }
@@ -71,7 +73,7 @@ fn check_header(source: &Source<'_>, document: &Spanned<DeTable<'_>>) -> Result<
     if let Some(version) = reader.required(table, "version", WHOLE)
         && version != VERSION
     {
-        reader.error_at(table, "version", &format!("version {version} of the format is not known"), "1");
+        reader.error_at(table, "version", &format!("version {version} of the format is not supported"), "1");
     }
     Ok(reader.report.finish().map(|_| ())?)
 }
@@ -131,7 +133,7 @@ mod tests {
     #[test]
     fn other_files_are_told_what_a_scene_is() {
         let other = message("scene = \"a.txt\"\n");
-        assert!(other.starts_with("a.toml:1:1: this is no scene: the key `format` is missing"), "{other}");
+        assert!(other.starts_with("a.toml:1:1: this is not a scene: the key `format` is missing"), "{other}");
         assert!(other.contains("expected a scene that starts with `format = \"lightcuts-scene\"`"), "{other}");
         let headless = message("[[object]]\ntype = \"mesh\"\n");
         assert!(
@@ -143,7 +145,7 @@ mod tests {
         assert!(message("format = 3").starts_with("a.toml:1:10: `format` is a number; expected a string"));
         assert!(message("format = \"lightcuts-scene\"").starts_with("a.toml:1:1: `version` is missing; expected"));
         let newer = message("format = \"lightcuts-scene\"\nversion = 2");
-        assert_eq!(newer, "a.toml:2:11: version 2 of the format is not known; expected 1");
+        assert_eq!(newer, "a.toml:2:11: version 2 of the format is not supported; expected 1");
     }
 
     #[test]

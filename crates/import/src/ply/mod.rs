@@ -127,15 +127,15 @@ mod tests {
             ("solid\n", "1:1: the first line is not `ply`"),
             ("ply\n", "2:1: the header has no end; expected `end_header`"),
             ("ply\nend_header\n", "2:1: the format is missing; expected `format ascii 1.0`"),
-            ("ply\nformat ascii 2.0\n", "2:1: the format is not known; expected `format ascii 1.0`"),
-            ("ply\nformat xml 1.0\n", "2:1: the format is not known"),
+            ("ply\nformat ascii 2.0\n", "2:1: the format is unknown; expected `format ascii 1.0`"),
+            ("ply\nformat xml 1.0\n", "2:1: the format is unknown"),
             (
                 "ply\nelement vertex -1\n",
                 "2:1: `-1` is not a number of elements; expected a line such as `element vertex 8`",
             ),
             ("ply\nelement vertex\n", "2:1: the number of elements is missing"),
             ("ply\nproperty float x\n", "2:1: a property before the first element"),
-            ("ply\nelement a 1\nproperty half x\n", "3:1: `half` is no type; expected one of char,"),
+            ("ply\nelement a 1\nproperty half x\n", "3:1: `half` is not a type; expected one of char,"),
             (
                 "ply\nelement a 1\nproperty list float int x\n",
                 "3:1: a list cannot have `float` items in number; expected",

@@ -2,12 +2,12 @@
 
 use super::turn;
 use glam::DVec2;
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 
 /// Cuts off ear after ear and adds them to `triangles`, n - 2 of them. False if it finds none before that, or if `work`,
 /// from which each comparison is taken, comes to its end. Triangles whose doubled area is within `slack` may be turned over.
 pub(super) fn cut_off(points: &[DVec2], slack: f64, work: &mut u64, triangles: &mut Vec<[u32; 3]>) -> bool {
-    Outline::new(points).cut_off(slack, work, triangles)
+    Outline::new(points, slack).cut_off(work, triangles)
 }
 
 /// What may be an ear, the strictest first: later ones are tried where there is none of the earlier.
@@ -17,12 +17,14 @@ enum Kind {
     Clear,
     /// Corners may lie on its edges.
     Touched,
-    /// It has no area.
+    /// It has no area worth the name.
     Flat,
 }
 
 struct Outline<'p> {
     points: &'p [DVec2],
+    /// Twice the area that is none.
+    slack: f64,
     before: Vec<u32>,
     after: Vec<u32>,
     is_cut: Vec<bool>,
@@ -35,10 +37,11 @@ struct Outline<'p> {
 }
 
 impl<'p> Outline<'p> {
-    fn new(points: &'p [DVec2]) -> Self {
+    fn new(points: &'p [DVec2], slack: f64) -> Self {
         let count = points.len() as u32;
         let mut outline = Self {
             points,
+            slack,
             before: (0..count).map(|i| (i + count - 1) % count).collect(),
             after: (0..count).map(|i| (i + 1) % count).collect(),
             is_cut: vec![false; points.len()],
@@ -66,34 +69,40 @@ impl<'p> Outline<'p> {
         !self.is_cut[i as usize] && (self.is_double[i as usize] || turn(a, b, c) <= 0.0)
     }
 
-    fn cut_off(mut self, slack: f64, work: &mut u64, triangles: &mut Vec<[u32; 3]>) -> bool {
-        let (mut at, mut tried, mut kind) = (0, 0, Kind::Clear);
+    fn cut_off(mut self, work: &mut u64, triangles: &mut Vec<[u32; 3]>) -> bool {
+        let mut kind = Kind::Clear;
+        // First come, first cut off: what is left stays as round as it can.
+        let mut waiting: VecDeque<u32> = (0..self.points.len() as u32).collect();
+        let (mut some_corner, mut has_cut) = (0, false);
         while self.left > 3 {
-            let ear = self.around(at);
-            let Some(left) = work.checked_sub(1) else { return false };
-            *work = left;
-            if self.is_ear(ear, kind, work) {
-                triangles.push(ear);
-                self.cut(ear);
-                // Not the next corner: the ears would become a fan of splinters.
-                at = self.after[ear[2] as usize];
-                (tried, kind) = (0, Kind::Clear);
-                continue;
-            }
-            (at, tried) = (ear[2], tried + 1);
-            if tried == self.left {
-                tried = 0;
+            let Some(corner) = waiting.pop_front() else {
+                // What was in the way of others may be gone.
                 kind = match kind {
+                    _ if has_cut => Kind::Clear,
                     Kind::Clear => Kind::Touched,
                     Kind::Touched => Kind::Flat,
                     Kind::Flat => return false,
                 };
+                has_cut = false;
+                waiting.extend(std::iter::successors(Some(some_corner), |&i| {
+                    Some(self.after[i as usize]).filter(|&next| next != some_corner)
+                }));
+                continue;
+            };
+            let Some(left) = work.checked_sub(1) else { return false };
+            *work = left;
+            let ear = self.around(corner);
+            if !self.is_cut[corner as usize] && self.is_ear(ear, kind, work) {
+                triangles.push(ear);
+                self.cut(ear);
+                waiting.extend([ear[0], ear[2]]);
+                (some_corner, has_cut) = (ear[0], true);
             }
         }
-        let last = self.around(at);
+        let last = self.around(some_corner);
         triangles.push(last);
         let [a, b, c] = last.map(|i| self.point(i));
-        turn(a, b, c) >= -slack
+        turn(a, b, c) >= -self.slack
     }
 
     fn cut(&mut self, [before, ear, after]: [u32; 3]) {
@@ -112,7 +121,7 @@ impl<'p> Outline<'p> {
         let corners = ear.map(|i| self.point(i));
         let [a, b, c] = corners;
         let area = turn(a, b, c);
-        if kind == Kind::Flat && area == 0.0 {
+        if kind == Kind::Flat && area.abs() <= self.slack {
             return true;
         }
         if area <= 0.0 || self.leaves_inwards(ear[0], corners, 0) || self.leaves_inwards(ear[2], corners, 2) {

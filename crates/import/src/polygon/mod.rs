@@ -2,7 +2,8 @@
 //!
 //! A polygon of n corners becomes n - 2 triangles. Where the fan around its first corner covers it, as it does every convex
 //! polygon, it becomes that fan: the order of triangles decides which of two equally near hits wins, and the thesis' results
-//! rest on it. Any other has its ears cut off (Meisters, "Polygons Have Ears", 1975), in the plane across its normal. Holes are bridges to the outline that are walked both ways: corners that occur twice.
+//! rest on it. Any other has its ears cut off (Meisters, "Polygons Have Ears", 1975), in the plane across its normal. Holes hang
+//! on bridges from the outline that are walked both ways: corners that occur twice.
 
 mod crossing;
 mod ears;

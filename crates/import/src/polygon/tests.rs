@@ -187,5 +187,5 @@ fn large_polygons_do_not_take_for_ever() {
     let mut numbers = Numbers(4);
     let scribble: Vec<Vec3> = (0..20_000).map(|_| Vec3::new(numbers.next(), numbers.next(), 0.0)).collect();
     assert_eq!(cut(&scribble, Vec3::Z).1, Outcome::Broken);
-    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+    assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
 }

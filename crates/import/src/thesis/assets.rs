@@ -166,7 +166,7 @@ impl<'a> Assets<'a> {
         Some(mesh)
     }
 
-    /// A copy of a mesh: its triangles are to wear other materials.
+    /// A copy of a mesh: its triangles are to have other materials.
     fn copy_mesh(&mut self, draft: &mut Draft, mesh: MeshId, directive: usize, place: &Fault) -> Option<MeshId> {
         let mesh = &draft.scene.meshes[mesh.0 as usize];
         self.files.elements += model::elements(mesh);

@@ -10,8 +10,8 @@ const BODIES: &[(&str, &str)] = &[
     ("lihgt = 1", "7:1: unknown key `lihgt` of the camera"),
     ("[cam]", "7:2: unknown key `cam` of a scene; expected one of `format`, `version`"),
     ("[[camera]]", "7:3: duplicate key"),
-    ("[material]", "7:1: `material` is no list of tables; expected `[[material]]`"),
-    ("[[environment]]", "7:1: `environment` is no table; expected `[environment]`"),
+    ("[material]", "7:1: `material` is not a list of tables; expected `[[material]]`"),
+    ("[[environment]]", "7:1: `environment` is not a table; expected `[environment]`"),
     (
         "[environment]\nimage = \"no.exr\"",
         "8:9: the image `no.exr` was not found; searched no.exr; expected a PNG, JPEG, EXR",
@@ -157,7 +157,7 @@ const BODIES: &[(&str, &str)] = &[
     ),
     (
         "{clay}[[object]]\ntype = \"box\"\nmaterial = \"clay\"\ncenter = [0, 0, 0]\nsize = [1, 1, 1]\nrotate = 5",
-        "15:10: `rotate` is no table; expected a rotation such as",
+        "15:10: `rotate` is not a table; expected a rotation such as",
     ),
     (
         "{clay}[[object]]\ntype = \"box\"\nmaterial = \"clay\"\ncenter = [0, 0, 0]\nsize = [1, 1, 1]\nrotate = [{ axis = [0, 0, 0], degrees = 5 }]",

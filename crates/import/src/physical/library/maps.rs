@@ -1,7 +1,7 @@
 //! Maps of MTL materials: images with their options.
 
 use super::super::image::ImageUse;
-use super::Converter;
+use super::{BUMPS, Converter, NORMALS};
 use glam::Vec3;
 use lightcuts_scene::TextureMode;
 use lightcuts_scene::physical::{ImageId, Tint};
@@ -51,7 +51,7 @@ impl Converter<'_, '_> {
             let listed: Vec<String> = map.unsupported.iter().map(|option| format!("`{option}`")).collect();
             warn(&format!("not supported, and ignored: {}", listed.join(", ")));
         }
-        if map.strength != 1.0 {
+        if map.strength != 1.0 && (NORMALS.contains(&keyword) || BUMPS.contains(&keyword)) {
             warn(&format!("`-bm {}` is not supported: normal maps have their full strength", map.strength));
         }
         let encoded = wanted == ImageUse::Color;

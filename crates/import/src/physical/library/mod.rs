@@ -30,7 +30,10 @@ const PRINCIPLED: [&str; 2] = ["Pr", "Pm"];
 const NEUTRAL_AT_ZERO: [(&str, &str); 5] =
     [("Ps", "Ps"), ("Pc", "Pc"), ("Pcr", "Pc"), ("aniso", "aniso"), ("anisor", "aniso")];
 
-/// Keywords under which Blender names normal maps.
+/// Keywords of normal maps.
+const NORMALS: [&str; 2] = ["norm", "map_norm"];
+
+/// Keywords of height maps, under which Blender names normal maps.
 const BUMPS: [&str; 3] = ["map_Bump", "map_bump", "bump"];
 
 /// Least and greatest refractive index of glass and coats, and how near to 1 nothing is refracted.
@@ -94,7 +97,7 @@ impl Converter<'_, '_> {
     /// `norm`; Blender, which has no height maps, writes normal maps as bump maps.
     fn normal_map(&mut self) -> Option<ImageId> {
         let bumps = if self.is_of_blender() { &BUMPS[..] } else { &[] };
-        let keyword = ["norm", "map_norm"].iter().chain(bumps).find(|keyword| self.found.other(keyword).is_some())?;
+        let keyword = NORMALS.iter().chain(bumps).find(|keyword| self.found.other(keyword).is_some())?;
         self.map(keyword, ImageUse::Data)
     }
 
