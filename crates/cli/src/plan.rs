@@ -142,11 +142,17 @@ pub(crate) fn load(
         ImportOptions { search_paths: search_paths.to_vec(), crease_degrees: crease_angle, ..ImportOptions::default() };
     let result = lightcuts::load_any(path, &options);
     // Warnings may tell where errors come from.
-    let warnings = result.as_ref().map_or_else(ImportError::warnings, |imported| &imported.warnings);
+    let warnings = result.as_ref().map_or_else(ImportError::warnings, |imported| imported.warnings.as_slice());
     for warning in warnings {
         console::show(&Report::new(warning.clone()));
     }
     let imported = result.map_err(|error| Failure::new(Exit::Input, error))?;
     tracing::info!(files = imported.files.len(), "read {}", path.display());
+    if crease_angle.is_some() && matches!(imported.scene, AnyScene::Thesis(_)) {
+        return Err(Failure::usage(
+            "a crease angle is given, which has no meaning in the thesis' text format",
+            "leave out --crease-angle, and `crease-angle` in the job",
+        ));
+    }
     Ok(imported)
 }

@@ -198,7 +198,7 @@ fn object(scene: &PhysicalScene, object: &PhysicalObject) -> Object {
         PhysicalShape::Mesh { smooth, override_material, .. } => (smooth, !override_material),
         _ => (false, false),
     };
-    let material = scene.materials.get(object.material.0 as usize).map_or("", |material| &material.name);
+    let material = scene.materials.get(object.material.0 as usize).map_or("", |material| material.name.as_str());
     Object {
         kind: shape_kind(&object.shape),
         name: object.name.clone(),

@@ -148,6 +148,7 @@ fn info_names_what_is_in_a_scene() {
     assert_eq!(json("--crease-angle 10")["smoothed_meshes"], serde_json::json!({ "10": 1 }));
     assert_eq!(json("--crease-angle 0")["smoothed_meshes"], serde_json::json!({}));
     folder.run("info roof.toml --crease-angle 181").code(2);
+    folder.run("info scene.txt --crease-angle 30").code(2);
 }
 
 #[test]
