@@ -95,7 +95,8 @@ impl Experiment {
         let job = Job {
             scene: self.plan.scenes[job.scene].file.clone(),
             search_path: self.search_path.clone(),
-            crease_angle: None, read_vpls: None,
+            crease_angle: None,
+            read_vpls: None,
             settings: job.settings.clone(),
         };
         let text = job.to_toml(folder_of(path)).ok();
