@@ -252,3 +252,24 @@ fn maps_that_are_scaled_and_shifted_move_texture_coordinates() {
     let (_, warnings) = model(body, &[("m.mtl", differing), ("c.png", &image)]);
     assert!(warnings.len() == 1 && warnings[0].contains("`-s` and `-o` differ from those of `map_Kd`"), "{warnings:?}");
 }
+
+#[test]
+fn no_damage_ends_the_program() {
+    let model = "mtllib m.mtl\nv 0 0 0\nv 2 1 0\nv 0 2 0 1 0 0\nv 0.5 1 0 # in\nvt 0 0\nvt 1 0\ns 1\nusemtl a\nf 1/1 2/2 \\\n 3/1 4/2\nl 1\n";
+    let library = "# Blender 5 MTL File\nnewmtl a\nKd .8 .1 .1\nKs .5\nNs 250\nNi 1.5\nd -halo .9\nPr .5\nPm .2\nTf 1\nillum 3\nmap_Kd -s 2 2 -o 1 c.png\n";
+    let (text, image) = (format!("{HEAD}{OBJECT}"), opaque_png([1, 2, 3]));
+    let parse = |model: &[u8], library: &[u8]| {
+        if let Ok(imported) = memory(&text, &[("m.obj", model), ("m.mtl", library), ("c.png", &image)]) {
+            assert_eq!(imported.scene.validate(), []);
+        }
+    };
+    for i in 0..model.len().max(library.len()) {
+        for byte in [b'0', b' ', b'-', b'#', b'\\', b'\n', b'9', 0xff] {
+            let [mut broken_model, mut broken_library] = [model, library].map(|text| text.as_bytes().to_vec());
+            broken_model.get_mut(i).into_iter().for_each(|place| *place = byte);
+            broken_library.get_mut(i).into_iter().for_each(|place| *place = byte);
+            parse(&broken_model, library.as_bytes());
+            parse(model.as_bytes(), &broken_library);
+        }
+    }
+}
