@@ -14,26 +14,28 @@ const PLY_HELP: &str = "write a scene that names the model: a TOML file with `fo
 
 const TOML_HELP: &str = "render a scene of the physical model as one, or write a scene in the thesis' text format";
 
-/// Extensions that scenes have elsewhere, and what they mean.
-const KNOWN_EXTENSIONS: [(&str, &str); 14] = [
-    ("obj", "an OBJ model without camera and lights"),
-    ("mtl", "an MTL material library"),
-    ("ply", "a PLY model"),
-    ("stl", "an STL model"),
-    ("gltf", "a glTF scene"),
-    ("glb", "a glTF scene"),
-    ("pbrt", "a pbrt scene"),
-    ("xml", "an XML file, maybe a Mitsuba scene"),
-    ("json", "a JSON file"),
-    ("usd", "a USD scene"),
-    ("usda", "a USD scene"),
-    ("blend", "a Blender file"),
-    ("png", "an image"),
-    ("jpg", "an image"),
+/// Extensions that scenes and pictures have elsewhere, and what they mean.
+const KNOWN_EXTENSIONS: [(&[&str], &str); 16] = [
+    (&["obj"], "an OBJ model without camera and lights"),
+    (&["mtl"], "an MTL material library"),
+    (&["ply"], "a PLY model"),
+    (&["stl"], "an STL model"),
+    (&["gltf", "glb"], "a glTF scene"),
+    (&["pbrt"], "a pbrt scene"),
+    (&["xml"], "an XML file, maybe a Mitsuba scene"),
+    (&["json"], "a JSON file"),
+    (&["usd", "usda", "usdc", "usdz"], "a USD scene"),
+    (&["blend"], "a Blender file"),
+    (&["fbx"], "an FBX scene"),
+    (&["dae"], "a COLLADA scene"),
+    (&["3ds", "max"], "a 3ds Max file"),
+    (&["wrl", "vrml", "x3d"], "a VRML or X3D scene"),
+    (&["abc"], "an Alembic scene"),
+    (&["png", "jpg", "jpeg", "exr", "hdr", "pic", "pfm", "tif", "tiff", "tga", "bmp", "gif", "webp"], "an image"),
 ];
 
 /// First bytes that give a format away.
-const KNOWN_STARTS: [(&[u8], &str); 10] = [
+const KNOWN_STARTS: [(&[u8], &str); 15] = [
     (b"glTF", "a glTF scene"),
     (b"ply\n", "a PLY model"),
     (b"ply\r", "a PLY model"),
@@ -42,14 +44,19 @@ const KNOWN_STARTS: [(&[u8], &str); 10] = [
     (b"\x89PNG", "an image"),
     (b"\xff\xd8\xff", "an image"),
     (b"v/1\x01", "an image"),
+    (b"#?RADIANCE", "an image"),
+    (b"#?RGBE", "an image"),
+    (b"PF\n", "an image"),
+    (b"GIF8", "an image"),
     (b"BLENDER", "a Blender file"),
+    (b"PXR-USDC", "a USD scene"),
     (b"mtllib ", "an OBJ model without camera and lights"),
 ];
 
 /// Fails for a file whose extension belongs to another format, before it is read: models may be large.
 pub(crate) fn refuse_known_extensions(path: &Path) -> Result<(), ImportError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    let known = KNOWN_EXTENSIONS.iter().find(|(known, _)| *known == extension);
+    let known = KNOWN_EXTENSIONS.iter().find(|(known, _)| known.contains(&&*extension));
     // A directory may be called anything; that it is one is the better message.
     known.filter(|_| path.is_file()).map_or(Ok(()), |(_, found)| Err(unknown(path, found)))
 }

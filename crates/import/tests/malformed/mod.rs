@@ -206,6 +206,12 @@ const FILES: &[(&str, &[u8], Expectation)] = &[
     ("gltf-inside.txt", b" {\"asset\": {}}", Error("a JSON file, maybe a glTF scene; expected", None)),
     ("mitsuba-inside", b"<scene version=\"3\">", Error("an XML file", None)),
     ("image-inside.txt", b"\x89PNG\r\n\x1a\n\0\0", Error("an image; expected", None)),
+    ("sky.hdr", b"#?RADIANCE\n\n-Y 1 +X 1\n\x80\x80\x80\x80", Error("this is an image; expected a scene", None)),
+    (
+        "light-inside.txt",
+        b"#?RADIANCE\n\n-Y 1 +X 1\n\x80\x80\x80\x80",
+        Error("this is an image; expected a scene", None),
+    ),
     ("unknown.scene", b"hello world", Error("the file holds no directive", Some(1))),
 ];
 
