@@ -6,6 +6,9 @@ use glam::{DVec3, Vec3};
 /// Cosines differ by this much before they count as different: an angle of just the limit is within it.
 const SLACK: f64 = 1e-6;
 
+/// A cosine nearer to 1 than this is that of one plane: coordinates of 32 bits tell no more.
+const FLAT: f64 = 1e-11;
+
 /// Gives the triangles without normals some, so that neighbours look like one curved surface unless the angle between them is
 /// above `degrees`.
 ///
@@ -13,7 +16,8 @@ const SLACK: f64 = 1e-6;
 /// directions. `group` says which smoothing group a triangle is in: those of different groups are no neighbours, and `None`
 /// stays flat. A corner's normal is the sum over the triangles that it is joined to, each weighted by the sine of its angle
 /// there over the lengths of both edges: exact for vertices on a sphere (Max, "Weights for Computing Vertex Normals from Facet
-/// Normals", Journal of Graphics Tools 4(2), 1999). Nothing changes for angles of 0 and less. Takes time and memory in
+/// Normals", Journal of Graphics Tools 4(2), 1999). Triangles that stay flat stay without normals; for angles of
+/// 0 and less all do. Takes time and memory in
 /// proportion to the mesh.
 pub fn smooth_normals(mesh: &mut MeshDesc, degrees: f32, group: impl Fn(usize) -> Option<u32>) {
     if degrees <= 0.0 {
@@ -26,13 +30,24 @@ pub fn smooth_normals(mesh: &mut MeshDesc, degrees: f32, group: impl Fn(usize) -
     let mut corners = Corners::new(bare.len() * 3);
     let least = f64::from(degrees).to_radians().cos() - SLACK;
     join_neighbors(mesh, &bare, least, &mut corners);
-    let first = mesh.normals.len() as u32;
-    let (indices, sums) = corners.sums(&bare);
-    mesh.normals.extend(sums.iter().map(|sum| sum.normalize_or_zero().as_vec3()));
-    for (triangle, indices) in bare.iter().zip(indices.chunks_exact(3)) {
-        mesh.triangles[triangle.index].normals = Some([0, 1, 2].map(|i| first + indices[i]));
+    let (numbers, sums) = corners.sums(&bare);
+    let units: Vec<DVec3> = sums.iter().map(|sum| sum.normalize_or_zero()).collect();
+    let mut indices: Vec<Option<u32>> = vec![None; units.len()];
+    for (triangle, numbers) in bare.iter().zip(numbers.chunks_exact(3)) {
+        let is_flat = |number: &u32| units[*number as usize].dot(triangle.normal) > 1.0 - FLAT;
+        if numbers.iter().all(is_flat) {
+            continue;
+        }
+        let mut index = |corner: usize| {
+            let number = numbers[corner] as usize;
+            *indices[number].get_or_insert_with(|| {
+                mesh.normals.push(units[number].as_vec3());
+                mesh.normals.len() as u32 - 1
+            })
+        };
+        mesh.triangles[triangle.index].normals = Some([index(0), index(1), index(2)]);
+        mesh.crease_degrees = Some(degrees);
     }
-    mesh.crease_degrees = Some(degrees);
 }
 
 /// A triangle that is to have normals.

@@ -145,8 +145,8 @@ fn info_names_what_is_in_a_scene() {
         (&"the roof".into(), &"roof".into(), &40.0.into())
     );
     assert_eq!(info["materials"].as_array().map(Vec::len), Some(2), "those of lights are not among them");
-    assert_eq!(json("--crease-angle 10")["smoothed_meshes"], serde_json::json!({ "10": 1 }));
-    assert_eq!(json("--crease-angle 0")["smoothed_meshes"], serde_json::json!({}));
+    assert_eq!(json("--crease-angle 25")["smoothed_meshes"], serde_json::json!({ "25": 1 }));
+    assert_eq!(json("--crease-angle 20")["smoothed_meshes"], serde_json::json!({}));
     folder.run("info roof.toml --crease-angle 181").code(2);
     folder.run("info scene.txt --crease-angle 30").code(2);
 }

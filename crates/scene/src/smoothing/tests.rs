@@ -18,8 +18,9 @@ fn smoothed(mut mesh: MeshDesc, degrees: f32) -> MeshDesc {
 /// Position and normal of each corner.
 fn corners(mesh: &MeshDesc) -> Vec<(Vec3, Vec3)> {
     let of = |t: &MeshTriangle| {
-        let normals = t.normals.expect("it has some");
-        [0, 1, 2].map(|i| (mesh.positions[t.positions[i] as usize], mesh.normals[normals[i] as usize]))
+        let points = t.positions.map(|i| mesh.positions[i as usize]);
+        let face = (points[1] - points[0]).cross(points[2] - points[0]).normalize();
+        [0, 1, 2].map(|i| (points[i], t.normals.map_or(face, |normals| mesh.normals[normals[i] as usize])))
     };
     mesh.triangles.iter().flat_map(of).collect()
 }
@@ -100,12 +101,17 @@ fn edges_above_the_angle_stay_sharp() {
 fn flat_meshes_and_given_normals_do_not_change() {
     let flat = cylinder(12);
     assert_eq!(smoothed(flat.clone(), 0.0), flat);
+    assert_eq!(smoothed(flat.clone(), 29.0), flat);
+    // Lids are flat, sides are not.
+    let round = smoothed(flat, 40.0);
+    assert_eq!((round.crease_degrees, round.normals.len()), (Some(40.0), 24));
+    assert!(round.triangles.chunks(4).all(|side| side[1].normals.is_some() && side[2].normals.is_none()));
     let mut given = cylinder(12);
     given.normals.push(Vec3::X);
     given.triangles[5].normals = Some([0; 3]);
     let made = smoothed(given, 40.0);
     assert_eq!((made.normals[0], made.triangles[5].normals), (Vec3::X, Some([0; 3])));
-    assert!(made.triangles[6].normals.is_some_and(|normals| !normals.contains(&0)));
+    assert!(made.triangles[8].normals.is_some_and(|normals| !normals.contains(&0)));
 }
 
 #[test]
