@@ -98,7 +98,7 @@ fn simple_polygons_are_covered_whatever_their_first_corner_and_direction() {
         let mut corners = match i % 3 {
             0 => mountains(&mut numbers),
             1 => comb(1 + numbers.below(6)),
-            _ => spiral(3 + numbers.below(40)),
+            _ => spiral(14 + numbers.below(40)),
         };
         let count = corners.len();
         corners.rotate_left(numbers.below(count));
