@@ -7,7 +7,7 @@ use crate::job::{self, Job, JobFile};
 use crate::outputs::Outputs;
 use lightcuts::rendering::Model;
 use lightcuts::scene::physical::from_thesis;
-use lightcuts::{AnyScene, ImportOptions, Imported, Settings};
+use lightcuts::{AnyScene, ImportError, ImportOptions, Imported, Settings};
 use miette::Report;
 use std::path::{Path, PathBuf};
 
@@ -28,6 +28,7 @@ struct Sources {
     files: Vec<JobFile>,
     scene: PathBuf,
     search_path: Vec<PathBuf>,
+    crease_angle: Option<f32>,
     read_vpls: Option<PathBuf>,
     /// Every file that was named as input.
     inputs: Vec<PathBuf>,
@@ -39,20 +40,20 @@ impl Plan {
         let mut sources = Sources::new(args.scene.as_deref(), &args.job)?;
         let outputs = Outputs::new(&args.output, &sources.scene)?;
         outputs.check(&sources.inputs)?;
-        let imported = load(&sources.scene, &sources.search_path)?;
+        let imported = load(&sources.scene, &sources.search_path, sources.crease_angle)?;
         let settings = resolved(&imported.scene, &sources.files, args)?;
         job::require_fitting(&args.settings, settings.run.model)?;
         let scene = in_model(imported.scene, &settings)?;
         sources.inputs.extend(imported.files);
         outputs.check(&sources.inputs)?;
-        let Sources { scene: file, search_path, read_vpls, .. } = sources;
+        let Sources { scene: file, search_path, crease_angle, read_vpls, .. } = sources;
         if settings.run.model == Model::Physical && (read_vpls.is_some() || args.output.write_vpls.is_some()) {
             return Err(Failure::usage(
                 "the physical model has no VPLs to read or write: each pass makes its own".to_owned(),
                 "leave out --read-vpls and --write-vpls",
             ));
         }
-        Ok(Self { scene, job: Job { scene: file, search_path, read_vpls, settings }, outputs })
+        Ok(Self { scene, job: Job { scene: file, search_path, crease_angle, read_vpls, settings }, outputs })
     }
 }
 
@@ -82,6 +83,7 @@ impl Sources {
         let inputs = [scene, args.file.as_deref(), Some(&scene_of_job), read_vpls.as_deref()];
         Ok(Self {
             inputs: inputs.into_iter().flatten().map(Path::to_path_buf).collect(),
+            crease_angle: args.crease.angle.or_else(|| files.iter().rev().find_map(|file| file.crease_angle)),
             search_path: search_path(&args.search, files.iter().rev().flat_map(|file| &file.search_path)),
             files,
             scene: scene_of_job,
@@ -130,13 +132,27 @@ pub(crate) fn search_path<'a>(args: &'a SearchArgs, of_job: impl Iterator<Item =
     folders
 }
 
-/// Reads a scene; its warnings go to standard error.
-pub(crate) fn load(path: &Path, search_paths: &[PathBuf]) -> Result<Imported<AnyScene>, Failure> {
-    let options = ImportOptions { search_paths: search_paths.to_vec(), ..ImportOptions::default() };
-    let imported = lightcuts::load_any(path, &options).map_err(|error| Failure::new(Exit::Input, error))?;
-    tracing::info!(files = imported.files.len(), "read {}", path.display());
-    for warning in &imported.warnings {
+/// Reads a scene; its warnings go to standard error. `crease_angle`, in degrees, takes the place of those of its objects.
+pub(crate) fn load(
+    path: &Path,
+    search_paths: &[PathBuf],
+    crease_angle: Option<f32>,
+) -> Result<Imported<AnyScene>, Failure> {
+    let options =
+        ImportOptions { search_paths: search_paths.to_vec(), crease_degrees: crease_angle, ..ImportOptions::default() };
+    let result = lightcuts::load_any(path, &options);
+    // Warnings may tell where errors come from.
+    let warnings = result.as_ref().map_or_else(ImportError::warnings, |imported| imported.warnings.as_slice());
+    for warning in warnings {
         console::show(&Report::new(warning.clone()));
+    }
+    let imported = result.map_err(|error| Failure::new(Exit::Input, error))?;
+    tracing::info!(files = imported.files.len(), "read {}", path.display());
+    if crease_angle.is_some() && matches!(imported.scene, AnyScene::Thesis(_)) {
+        return Err(Failure::usage(
+            "a crease angle is given, which has no meaning in the thesis' text format",
+            "leave out --crease-angle, and `crease-angle` in the job",
+        ));
     }
     Ok(imported)
 }

@@ -11,7 +11,7 @@ pub enum ImportError {
     #[diagnostic(code(lightcuts::import::unreadable))]
     Unreadable(#[from] FileError),
 
-    /// The file is no scene in a known format.
+    /// The file is not a scene in a known format.
     #[error("{}: this is {found}; expected a scene in the thesis' text format (.txt) or in the project's own (.toml)", path.display())]
     #[diagnostic(code(lightcuts::import::unknown_format))]
     UnknownFormat {
@@ -38,25 +38,28 @@ impl ImportError {
             _ => &[],
         }
     }
+
+    /// What was warned about before and beside the errors: a file that was not found may be why something is missing.
+    pub fn warnings(&self) -> &[Warning] {
+        match self {
+            Self::Invalid(faults) => &faults.warnings,
+            _ => &[],
+        }
+    }
 }
 
 /// At least one fault. Displayed as the first; the others are related diagnostics.
 #[derive(Debug, Clone)]
 pub struct Faults {
-    list: Vec<Fault>,
-    complete: bool,
-}
-
-impl Faults {
-    /// `None` without faults. `complete` tells whether the search for faults went to the end.
-    pub(crate) fn new(list: Vec<Fault>, complete: bool) -> Option<Self> {
-        (!list.is_empty()).then_some(Self { list, complete })
-    }
+    pub(crate) list: Vec<Fault>,
+    pub(crate) warnings: Vec<Warning>,
+    /// Whether the search for faults went to the end.
+    pub(crate) complete: bool,
 }
 
 impl From<Fault> for Faults {
     fn from(fault: Fault) -> Self {
-        Self { list: vec![fault], complete: true }
+        Self { list: vec![fault], warnings: Vec::new(), complete: true }
     }
 }
 

@@ -38,6 +38,18 @@ impl<'a> Files<'a> {
         self.resolver.find(name, beside).map_err(not_found)
     }
 
+    /// The first of these names that a file beside `beside` or in a search path has; the last one if there is no such file.
+    pub(crate) fn first_found<'n>(&self, names: impl Iterator<Item = &'n str>, beside: &Path) -> &'n str {
+        let mut last = "";
+        for name in names {
+            last = name;
+            if self.resolver.find(name, Some(beside)).is_ok() {
+                break;
+            }
+        }
+        last
+    }
+
     /// Equal for two paths that lead to the same file.
     pub(crate) fn identity(&self, path: &Path) -> PathBuf {
         self.resolver.identity(path)

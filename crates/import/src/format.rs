@@ -3,31 +3,39 @@
 use crate::ImportError;
 use std::path::Path;
 
-const OBJ_HELP: &str = "write a scene with a camera, a light and a line such as `O | FRKE{0, 0, 1, 1} | PATH:model.obj | SMTH(1) | \
-                        S{0, 0, 0} | D{0.5, 0.5, 0.5} | A{0, 0, 0} | SH(20)`";
+const OBJ_HELP: &str = "write a scene that names the model: a TOML file with `format = \"lightcuts-scene\"`, `version = 1`, a \
+                        `[camera]`, an `[environment]`, and `[[mesh]]` `name = \"model\"` `file = \"model.obj\"` with `[[object]]` \
+                        `type = \"mesh\"` `mesh = \"model\"`; or a scene of the thesis' model with a line such as \
+                        `O | FRKE{0, 0, 1, 1} | PATH:model.obj | SMTH(1) | S{0, 0, 0} | D{0.5, 0.5, 0.5} | A{0, 0, 0} | SH(20)`";
+
+const PLY_HELP: &str = "write a scene that names the model: a TOML file with `format = \"lightcuts-scene\"`, `version = 1`, a \
+                        `[camera]`, an `[environment]`, a `[[material]]`, and `[[mesh]]` `name = \"model\"` \
+                        `file = \"model.ply\"` with `[[object]]` `type = \"mesh\"` `mesh = \"model\"` `material = \"...\"`";
 
 const TOML_HELP: &str = "render a scene of the physical model as one, or write a scene in the thesis' text format";
 
-/// Extensions that scenes have elsewhere, and what they mean.
-const KNOWN_EXTENSIONS: [(&str, &str); 14] = [
-    ("obj", "an OBJ model without camera and lights"),
-    ("mtl", "an MTL material library"),
-    ("ply", "a PLY model"),
-    ("stl", "an STL model"),
-    ("gltf", "a glTF scene"),
-    ("glb", "a glTF scene"),
-    ("pbrt", "a pbrt scene"),
-    ("xml", "an XML file, maybe a Mitsuba scene"),
-    ("json", "a JSON file"),
-    ("usd", "a USD scene"),
-    ("usda", "a USD scene"),
-    ("blend", "a Blender file"),
-    ("png", "an image"),
-    ("jpg", "an image"),
+/// Extensions that scenes and pictures have elsewhere, and what they mean.
+const KNOWN_EXTENSIONS: [(&[&str], &str); 16] = [
+    (&["obj"], "an OBJ model without camera and lights"),
+    (&["mtl"], "an MTL material library"),
+    (&["ply"], "a PLY model"),
+    (&["stl"], "an STL model"),
+    (&["gltf", "glb"], "a glTF scene"),
+    (&["pbrt"], "a pbrt scene"),
+    (&["xml"], "an XML file, maybe a Mitsuba scene"),
+    (&["json"], "a JSON file"),
+    (&["usd", "usda", "usdc", "usdz"], "a USD scene"),
+    (&["blend"], "a Blender file"),
+    (&["fbx"], "an FBX scene"),
+    (&["dae"], "a COLLADA scene"),
+    (&["3ds", "max"], "a 3ds Max file"),
+    (&["wrl", "vrml", "x3d"], "a VRML or X3D scene"),
+    (&["abc"], "an Alembic scene"),
+    (&["png", "jpg", "jpeg", "exr", "hdr", "pic", "pfm", "tif", "tiff", "tga", "bmp", "gif", "webp"], "an image"),
 ];
 
 /// First bytes that give a format away.
-const KNOWN_STARTS: [(&[u8], &str); 10] = [
+const KNOWN_STARTS: [(&[u8], &str); 15] = [
     (b"glTF", "a glTF scene"),
     (b"ply\n", "a PLY model"),
     (b"ply\r", "a PLY model"),
@@ -36,14 +44,19 @@ const KNOWN_STARTS: [(&[u8], &str); 10] = [
     (b"\x89PNG", "an image"),
     (b"\xff\xd8\xff", "an image"),
     (b"v/1\x01", "an image"),
+    (b"#?RADIANCE", "an image"),
+    (b"#?RGBE", "an image"),
+    (b"PF\n", "an image"),
+    (b"GIF8", "an image"),
     (b"BLENDER", "a Blender file"),
+    (b"PXR-USDC", "a USD scene"),
     (b"mtllib ", "an OBJ model without camera and lights"),
 ];
 
 /// Fails for a file whose extension belongs to another format, before it is read: models may be large.
 pub(crate) fn refuse_known_extensions(path: &Path) -> Result<(), ImportError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    let known = KNOWN_EXTENSIONS.iter().find(|(known, _)| *known == extension);
+    let known = KNOWN_EXTENSIONS.iter().find(|(known, _)| known.contains(&&*extension));
     // A directory may be called anything; that it is one is the better message.
     known.filter(|_| path.is_file()).map_or(Ok(()), |(_, found)| Err(unknown(path, found)))
 }
@@ -70,6 +83,10 @@ pub(crate) fn toml(path: &Path) -> ImportError {
 }
 
 fn unknown(path: &Path, found: &'static str) -> ImportError {
-    let help = found.starts_with("an OBJ").then_some(OBJ_HELP);
+    let help = match found {
+        found if found.starts_with("an OBJ") => Some(OBJ_HELP),
+        "a PLY model" => Some(PLY_HELP),
+        _ => None,
+    };
     ImportError::UnknownFormat { path: path.to_path_buf(), found, help }
 }

@@ -18,6 +18,7 @@ mod number;
 mod obj;
 mod physical;
 mod ply;
+mod polygon;
 mod report;
 mod resolver;
 mod source;
@@ -42,6 +43,8 @@ pub struct ImportOptions {
     pub search_paths: Vec<PathBuf>,
     /// Largest sizes to accept.
     pub limits: Limits,
+    /// Angle in degrees, 0 to 180, that takes the place of every object's `crease-angle` in scenes of the physical model.
+    pub crease_degrees: Option<f32>,
 }
 
 /// A scene that was read.
@@ -80,30 +83,36 @@ pub fn load(path: &Path, options: &ImportOptions) -> Result<Imported, ImportErro
     if format::is_toml(path) {
         return Err(format::toml(path));
     }
-    read(path, options, options.limits.scene_bytes, parse_thesis)
+    read(path, options, options.limits.scene_bytes, |text, name, resolver| {
+        parse_thesis(text, name, resolver, &options.limits)
+    })
 }
 
 /// Reads the scene file at `path`, of either model, and every model and image that it names. What ends in `.toml` is read as
 /// [`parse_physical`] does, all else as [`load`] does.
 pub fn load_any(path: &Path, options: &ImportOptions) -> Result<Imported<AnyScene>, ImportError> {
     if format::is_toml(path) {
-        let physical = read(path, options, options.limits.document_bytes, parse_physical)?;
+        let physical = read(path, options, options.limits.document_bytes, |text, name, resolver| {
+            physical::parse_creased(text, name, resolver, &options.limits, options.crease_degrees)
+        })?;
         return Ok(physical.map(AnyScene::Physical));
     }
     Ok(load(path, options)?.map(AnyScene::Thesis))
 }
 
-/// What reads a scene from a text.
-type Parse<S> = fn(&str, &str, &dyn Resolver, &Limits) -> Result<Imported<S>, ImportError>;
-
-/// Reads a file of at most `limit` bytes.
-fn read<S>(path: &Path, options: &ImportOptions, limit: u64, parse: Parse<S>) -> Result<Imported<S>, ImportError> {
+/// Reads a file of at most `limit` bytes; `parse` makes a scene of its text and its name.
+fn read<S>(
+    path: &Path,
+    options: &ImportOptions,
+    limit: u64,
+    parse: impl FnOnce(&str, &str, &dyn Resolver) -> Result<Imported<S>, ImportError>,
+) -> Result<Imported<S>, ImportError> {
     let resolver = FileResolver::new(path, &options.search_paths);
     let bytes = resolver::read(&resolver, path, limit)?;
     let name = path.display().to_string();
     format::refuse_other_content(path, &bytes)?;
     let text = source::decode(&name, &bytes)?;
-    let mut imported = parse(&text, &name, &resolver, &options.limits)?;
+    let mut imported = parse(&text, &name, &resolver)?;
     imported.files.insert(0, path.to_path_buf());
     Ok(imported)
 }

@@ -10,6 +10,9 @@ use std::path::Path;
 /// Longest logical line, in bytes: a polygon of a million corners still fits.
 const MAX_LINE: usize = 16 << 20;
 
+/// What starts a comment, in OBJ and MTL files.
+const COMMENT: char = '#';
+
 /// Reads logical lines.
 pub(crate) struct Lines<'a> {
     reader: BufReader<Box<dyn Read + 'a>>,
@@ -70,7 +73,8 @@ impl<'a> Lines<'a> {
             if !self.read_raw()? {
                 return Ok(!self.parts.is_empty());
             }
-            self.parts.push((self.text.len(), self.number));
+            let start = self.text.len();
+            self.parts.push((start, self.number));
             self.text.push_str(&decode_line(&self.raw));
             if let Some(byte) = first_binary_byte(&self.raw) {
                 let start = self.text.len() - decode_line(&self.raw[byte..]).len();
@@ -81,7 +85,7 @@ impl<'a> Lines<'a> {
                 let message = format!("the line is longer than {MAX_LINE} bytes");
                 return Err(self.content_error(0..1, &message));
             }
-            if !self.text.ends_with('\\') {
+            if !self.text.ends_with('\\') || ends_in_comment(&self.text[start..]) {
                 return Ok(true);
             }
             // A blank in place of the backslash keeps the columns right and the words apart.
@@ -126,6 +130,23 @@ impl<'a> Lines<'a> {
         }
         Ok(count > 0)
     }
+}
+
+/// Whether a comment, in which a backslash means nothing, ends the line. A `#` within a word belongs to a name.
+pub(crate) fn ends_in_comment(line: &str) -> bool {
+    without_comment(line).len() < line.len()
+}
+
+/// A line up to a comment that starts it or stands behind a blank: where names are expected, which may hold a `#`.
+pub(crate) fn without_comment(line: &str) -> &str {
+    let starts = line.match_indices(COMMENT).map(|(i, _)| i);
+    let mut comments = starts.filter(|&i| i == 0 || line[..i].ends_with(|c: char| c.is_ascii_whitespace()));
+    comments.next().map_or(line, |i| &line[..i])
+}
+
+/// The length of a line up to its first `#`: where numbers are expected.
+pub(crate) fn length_without_comment(line: &str) -> usize {
+    line.find(COMMENT).unwrap_or(line.len())
 }
 
 /// The words of a part of `text`, as spans of `text`.

@@ -1,8 +1,9 @@
-//! Models, whatever their file format: triangles, and the names of what they wear.
+//! Models, whatever their file format: triangles, and the names of their materials.
 
 use crate::files::{AssetError, Files};
 use crate::lines::Lines;
 use crate::ply::{self, PlyFile};
+use crate::polygon::Cut;
 use crate::report::Report;
 use crate::{Fault, obj};
 use lightcuts_scene::MeshDesc;
@@ -13,8 +14,10 @@ use std::path::Path;
 pub(crate) struct Model {
     /// Triangles without materials.
     pub(crate) mesh: MeshDesc,
-    /// Which triangles wear which of `materials`: from a run's start to the next run's.
+    /// Which triangles have which of `materials`: from a run's start to the next run's.
     pub(crate) runs: Vec<MaterialRun>,
+    /// Smoothing groups likewise; none if the file says nothing of them.
+    pub(crate) smoothing: Vec<SmoothingRun>,
     /// Material names in the order of their first use, with a fault that points there and has yet to say why.
     pub(crate) materials: Vec<(String, Fault)>,
     /// The file names of each `mtllib` line, unsplit, likewise.
@@ -27,6 +30,14 @@ pub(crate) struct MaterialRun {
     pub(crate) first_triangle: usize,
     /// Index into [`Model::materials`].
     pub(crate) material: usize,
+}
+
+/// Triangles that follow one `s` line.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SmoothingRun {
+    pub(crate) first_triangle: usize,
+    /// 0 for faces that are not smoothed.
+    pub(crate) group: u32,
 }
 
 /// The formats of models.
@@ -52,6 +63,7 @@ impl Model {
         files: &mut Files<'_>,
         path: &Path,
         format: ModelFormat,
+        cut: Cut,
         place: &Fault,
         report: &mut Report,
     ) -> Result<Option<Self>, AssetError> {
@@ -60,8 +72,8 @@ impl Model {
         let name = path.display().to_string();
         let room = files.room();
         let parsed = match format {
-            ModelFormat::Obj => obj::parse(Lines::new(reader, path, &name, limit, "an OBJ model"), room, report),
-            ModelFormat::Ply => ply::parse(PlyFile { reader, path, name: &name, limit }, room, report),
+            ModelFormat::Obj => obj::parse(Lines::new(reader, path, &name, limit, "an OBJ model"), room, cut, report),
+            ModelFormat::Ply => ply::parse(PlyFile { reader, path, name: &name, limit }, room, cut, report),
         };
         let Some(model) = parsed.map_err(|error| AssetError::File { what: "model", error })? else { return Ok(None) };
         if model.mesh.triangles.is_empty() {
@@ -89,3 +101,7 @@ pub(crate) fn elements(mesh: &MeshDesc) -> usize {
 pub(crate) fn too_large(limit: usize) -> String {
     format!("the meshes have more than {limit} vertices and triangles")
 }
+
+/// The warning about the colours of vertices.
+pub(crate) const VERTEX_COLORS_UNUSED: &str =
+    "the model has vertex colours, which are not supported: its surfaces have the colours of their materials";

@@ -47,9 +47,39 @@ impl Report {
         }
     }
 
-    /// The warnings if there is no error, else the errors.
+    /// The warnings if there is no error, else the errors with the warnings, which may tell where the errors come from.
     pub(crate) fn finish(self) -> Result<Vec<Warning>, Faults> {
+        if self.errors.is_empty() {
+            return Ok(self.warnings);
+        }
         let complete = !self.is_full();
-        Faults::new(self.errors, complete).map_or(Ok(self.warnings), Err)
+        Err(Faults { list: self.errors, warnings: self.warnings, complete })
     }
+}
+
+/// Things of one kind in a file, counted and warned about once, at the first of them.
+#[derive(Debug, Default)]
+pub(crate) struct Tally {
+    count: usize,
+    first: Option<Box<Fault>>,
+}
+
+impl Tally {
+    /// Counts one more; `place` is a fault there that has yet to say what is wrong.
+    pub(crate) fn note(&mut self, place: impl FnOnce() -> Fault) {
+        self.count += 1;
+        self.first.get_or_insert_with(|| Box::new(place()));
+    }
+
+    /// Warns if there were any.
+    pub(crate) fn warn(self, report: &mut Report, message: impl FnOnce(usize) -> String) {
+        if let Some(first) = self.first {
+            report.warn(|| first.with_message(&message(self.count)));
+        }
+    }
+}
+
+/// `1 face`, `2 faces`.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }

@@ -207,11 +207,11 @@ fn library_materials_take_their_optics_from_the_scene() {
     let imported = memory(&text, [("m.obj", &model), ("m.mtl", library), ("t.png", &texture)]).expect("it is sound");
     let scene = imported.scene;
     assert_eq!((scene.meshes.len(), scene.images.len(), scene.objects.len()), (2, 1, 4));
-    let wears: Vec<Option<MaterialId>> =
+    let named: Vec<Option<MaterialId>> =
         scene.meshes.iter().flat_map(|mesh| mesh.triangles.iter().map(|t| t.material)).collect();
     let ratio = |id: Option<MaterialId>| id.map(|id| scene.materials[id.0 as usize].refraction_ratio);
-    assert_eq!(wears.iter().map(|id| ratio(*id)).collect::<Vec<_>>(), [Some(1.0), None, Some(2.0), None]);
-    let red = &scene.materials[wears[0].expect("it has one").0 as usize];
+    assert_eq!(named.iter().map(|id| ratio(*id)).collect::<Vec<_>>(), [Some(1.0), None, Some(2.0), None]);
+    let red = &scene.materials[named[0].expect("it has one").0 as usize];
     assert_eq!((red.diffuse.x, red.specular.y, red.ambient.z, red.exponent, red.reflection), (1.0, 1.0, 1.0, 7.0, 0.5));
     assert_eq!(red.texture.map(|texture| texture.mode), Some(TextureMode::Straight));
     assert_eq!(scene.images[0].texels, [[1, 2, 3]; 2]);

@@ -9,6 +9,7 @@ mod light;
 mod material;
 mod object;
 pub mod physical;
+mod smoothing;
 mod validate;
 
 pub use camera::{CameraDesc, Projection, SamplerKind};
@@ -16,6 +17,7 @@ pub use defaults::{PerDevice, RunDefaults, VplDefaults};
 pub use light::{LightDesc, LightKind};
 pub use material::{ImageDesc, ImageId, MaterialDesc, MaterialId, TextureDesc, TextureMode};
 pub use object::{MeshDesc, MeshId, MeshTriangle, ObjectDesc, ShapeDesc, Transform};
+pub use smoothing::smooth_normals;
 pub use validate::{Issue, MAX_COORDINATE, MAX_EMITTERS, Subject};
 
 use glam::Vec3;

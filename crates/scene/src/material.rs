@@ -34,7 +34,7 @@ pub struct MaterialDesc {
 }
 
 impl Default for MaterialDesc {
-    /// Half-grey, matt, opaque.
+    /// Half-grey, diffuse, opaque.
     fn default() -> Self {
         Self {
             name: String::new(),

@@ -101,6 +101,8 @@ pub struct MeshDesc {
     pub texture_coordinates: Vec<[f32; 2]>,
     /// Triangles in file order; a polygon of n vertices is n - 2 of them.
     pub triangles: Vec<MeshTriangle>,
+    /// Greatest angle in degrees up to which neighbours were made to look smooth, if any were.
+    pub crease_degrees: Option<f32>,
 }
 
 /// Three corners, each an index per attribute.

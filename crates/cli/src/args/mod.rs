@@ -102,6 +102,8 @@ pub(crate) struct InfoArgs {
     pub(crate) path: PathBuf,
     #[command(flatten)]
     pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) crease: CreaseArgs,
     /// Print JSON for machines.
     #[arg(long)]
     pub(crate) json: bool,
@@ -116,6 +118,17 @@ pub(crate) struct SearchArgs {
     /// then those of the environment variable LIGHTCUTS_PATH.
     #[arg(long = "search-path", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) folders: Vec<PathBuf>,
+}
+
+/// How meshes without normals are smoothed.
+#[derive(Debug, Default, Args)]
+pub(crate) struct CreaseArgs {
+    /// Angle between faces, in degrees, up to which meshes without normals look smooth; 0 shows every face flat
+    /// [default: that of each object, 40 where it has none]
+    ///
+    /// Physical scenes in TOML only. It takes the place of every object's `crease-angle`.
+    #[arg(long = "crease-angle", value_name = "DEGREES", value_parser = value::angle)]
+    pub(crate) angle: Option<f32>,
 }
 
 /// The settings that were given on the command line: serialised, the tables of a job file with only these keys.

@@ -1,6 +1,6 @@
 //! Arguments of `render`: input, job, outputs, and what does not belong to the job.
 
-use super::{DeviceArgs, SearchArgs, SettingFlags};
+use super::{CreaseArgs, DeviceArgs, SearchArgs, SettingFlags};
 use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
 
@@ -73,6 +73,8 @@ pub(crate) struct JobArgs {
     pub(crate) file: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) crease: CreaseArgs,
     /// Take VPLs from a CSV that --write-vpls wrote, instead of placing them.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) read_vpls: Option<PathBuf>,

@@ -43,6 +43,12 @@ impl FromStr for Seconds {
     }
 }
 
+/// An angle in degrees, 0 to 180.
+pub(super) fn angle(text: &str) -> Result<f32, String> {
+    let angle = text.parse().ok().filter(|angle: &f32| (0.0..=180.0).contains(angle));
+    angle.ok_or_else(|| "expected an angle from 0 to 180 degrees".to_owned())
+}
+
 /// For a flag that switches off what its key switches on.
 #[expect(clippy::ref_option, clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
 pub(super) fn negated<S: Serializer>(flag: &Option<bool>, serializer: S) -> Result<S::Ok, S::Error> {

@@ -95,6 +95,7 @@ impl Experiment {
         let job = Job {
             scene: self.plan.scenes[job.scene].file.clone(),
             search_path: self.search_path.clone(),
+            crease_angle: None,
             read_vpls: None,
             settings: job.settings.clone(),
         };

@@ -1,6 +1,7 @@
 //! The command `info`: what was understood of a scene, what a picture holds.
 
 mod physical;
+mod physical_text;
 mod picture;
 mod scene;
 mod text;
@@ -19,7 +20,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Exit, Failure> {
         let info = picture::PictureInfo::read(&args.path)?;
         return show(&info, args.json, text::of_picture);
     }
-    let imported = load(&args.path, &search_path(&args.search, std::iter::empty()))?;
+    let imported = load(&args.path, &search_path(&args.search, std::iter::empty()), args.crease.angle)?;
     let Imported { scene, warnings, files } = imported;
     match scene {
         AnyScene::Thesis(scene) => {
@@ -30,7 +31,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Exit, Failure> {
         AnyScene::Physical(scene) => {
             let world = PhysicalWorld::new(&scene).map_err(Failure::input)?;
             let info = physical::PhysicalInfo::new(&Imported { scene, warnings, files }, &world);
-            show(&info, args.json, text::of_physical)
+            show(&info, args.json, physical_text::of_physical)
         }
     }
 }

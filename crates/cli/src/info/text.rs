@@ -1,11 +1,10 @@
 //! The same for people.
 
-use super::physical::PhysicalInfo;
 use super::picture::PictureInfo;
 use super::scene::{Camera, Object, Parameter, SceneInfo, Texture};
 
-/// Objects that are listed; more are only counted.
-const MAX_OBJECTS: usize = 100;
+/// Objects, lights and materials that are listed; more are only counted.
+pub(super) const MAX_LISTED: usize = 100;
 
 /// Of a scene: a line per matter, a table of the objects.
 pub(super) fn of_scene(info: &SceneInfo) -> String {
@@ -20,45 +19,10 @@ pub(super) fn of_scene(info: &SceneInfo) -> String {
     lines.extend(table(&info.objects));
     let amounts = [(totals.triangles, "triangle"), (totals.spheres, "sphere"), (totals.squares, "square")];
     lines.push(line("totals", &amounts.map(|(n, name)| count(n, name)).join(", ")));
-    lines.push(line(
-        "bounds",
-        &info.bounds.map_or("nothing to see".to_owned(), |[a, b]| format!("{} to {}", vector(a), vector(b))),
-    ));
+    lines.push(line("bounds", &info.bounds.map_or("nothing to see".to_owned(), bounds)));
     lines.push(line("recommended", &recommended(&info.recommended)));
     lines.extend(info.files.iter().map(|file| line("read", file)));
     // The warnings themselves went to standard error.
-    lines.push(line("warnings", &info.warnings.len().to_string()));
-    lines.join("")
-}
-
-/// Of a scene of the physical model.
-pub(super) fn of_physical(info: &PhysicalInfo) -> String {
-    let kinds = |counts: &std::collections::BTreeMap<&str, usize>| -> Vec<String> {
-        counts.iter().map(|(kind, number)| format!("{number} {kind}")).collect()
-    };
-    let mut lights = kinds(&info.lights);
-    if info.luminous > 0 {
-        lights.push(count(info.luminous, "luminous surface"));
-    }
-    if info.has_environment {
-        lights.push("environment".to_owned());
-    }
-    let or_none = |list: Vec<String>| if list.is_empty() { "none".to_owned() } else { list.join(", ") };
-    let amounts = [(info.triangles, "triangle"), (info.spheres, "sphere"), (info.squares, "square")];
-    let mut lines = vec![
-        line("scene", &info.name),
-        line("model", "physical"),
-        line("lights", &or_none(lights)),
-        line("objects", &info.objects.to_string()),
-        line("materials", &or_none(kinds(&info.materials))),
-        line("images", &info.images.to_string()),
-        line("totals", &amounts.map(|(n, name)| count(n, name)).join(", ")),
-        line(
-            "bounds",
-            &info.bounds.map_or("nothing to see".to_owned(), |[a, b]| format!("{} to {}", vector(a), vector(b))),
-        ),
-    ];
-    lines.extend(info.files.iter().map(|file| line("read", file)));
     lines.push(line("warnings", &info.warnings.len().to_string()));
     lines.join("")
 }
@@ -74,7 +38,7 @@ pub(super) fn of_picture(info: &PictureInfo) -> String {
         + &job
 }
 
-fn line(name: &str, value: &str) -> String {
+pub(super) fn line(name: &str, value: &str) -> String {
     format!("{name:<12} {value}\n")
 }
 
@@ -83,11 +47,11 @@ fn indented(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-fn vector([x, y, z]: [f32; 3]) -> String {
+pub(super) fn vector([x, y, z]: [f32; 3]) -> String {
     format!("({x}, {y}, {z})")
 }
 
-fn count(number: usize, name: &str) -> String {
+pub(super) fn count(number: usize, name: &str) -> String {
     format!("{number} {name}{}", if number == 1 { "" } else { "s" })
 }
 
@@ -117,22 +81,32 @@ fn recommended(parameters: &[Parameter]) -> String {
 
 fn table(objects: &[Object]) -> Vec<String> {
     let header = ["", "line", "kind", "F R K E", "triangles", "material", "texture"].map(str::to_owned);
-    let rows: Vec<_> = objects.iter().take(MAX_OBJECTS).enumerate().map(|(i, object)| row(i, object)).collect();
+    let rows: Vec<_> = objects.iter().take(MAX_LISTED).enumerate().map(|(i, object)| row(i, object)).collect();
     if rows.is_empty() {
         return Vec::new();
     }
     let rows: Vec<_> = std::iter::once(header).chain(rows).collect();
+    aligned(&rows).into_iter().chain(more(objects.len())).collect()
+}
+
+/// A line for each row, with cells of one column below each other.
+pub(super) fn aligned<const N: usize>(rows: &[[String; N]]) -> Vec<String> {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<_> = (0..7).map(width).collect();
-    let aligned = |row: &[String; 7]| {
+    let widths: Vec<_> = (0..N).map(width).collect();
+    let line = |row: &[String; N]| {
         let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}"));
         format!("  {}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
     };
-    let mut lines: Vec<_> = rows.iter().map(aligned).collect();
-    if objects.len() > MAX_OBJECTS {
-        lines.push(format!("  ... and {} more\n", objects.len() - MAX_OBJECTS));
-    }
-    lines
+    rows.iter().map(line).collect()
+}
+
+/// How many there are beside those that are listed.
+pub(super) fn more(all: usize) -> Option<String> {
+    (all > MAX_LISTED).then(|| format!("  ... and {} more\n", all - MAX_LISTED))
+}
+
+pub(super) fn bounds([lower, upper]: [[f32; 3]; 2]) -> String {
+    format!("{} to {}", vector(lower), vector(upper))
 }
 
 fn row(index: usize, object: &Object) -> [String; 7] {

@@ -5,7 +5,7 @@ use crate::fault::fault;
 use lightcuts::rendering::TomlFault;
 
 /// The keys of a job file beside the tables of settings.
-pub(super) const TOP_KEYS: [&str; 3] = ["scene", "search-path", "read-vpls"];
+pub(super) const TOP_KEYS: [&str; 4] = ["scene", "search-path", "crease-angle", "read-vpls"];
 
 /// An error of the TOML reader.
 pub(super) fn toml_fault(name: &str, text: &str, error: &toml::de::Error) -> Failure {

@@ -27,6 +27,7 @@ pub(crate) struct JobFile {
     text: String,
     pub(crate) scene: Option<PathBuf>,
     pub(crate) search_path: Vec<PathBuf>,
+    pub(crate) crease_angle: Option<f32>,
     pub(crate) read_vpls: Option<PathBuf>,
     /// The tables of settings, with the keys that are there.
     pub(super) settings: toml::Table,
@@ -39,6 +40,7 @@ struct Head {
     scene: Option<String>,
     #[serde(default)]
     search_path: Vec<String>,
+    crease_angle: Option<f32>,
     read_vpls: Option<String>,
 }
 
@@ -47,18 +49,26 @@ pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }
 
-/// Whether a file holds a job and not a scene: pictures do, and TOML that does not say that it is a scene.
+/// Whether a file holds a job and not a scene: pictures do, and TOML that does not look like a scene. A file that is not there
+/// is a scene that is not there.
 pub(crate) fn is_job_carrier(path: &Path) -> bool {
     ["exr", "png"].iter().any(|extension| has_extension(path, extension))
-        || (has_extension(path, "toml") && !is_scene_document(path))
+        || (has_extension(path, "toml") && path.exists() && !is_scene_document(path))
 }
 
-/// Whether a TOML file names the format of scenes. One that cannot be read is a job: reading it will tell why.
+/// Whether a TOML file names a format, or has a table that only scenes have: reading it as a scene tells best what is wrong
+/// with it then. One that cannot be read is a job: reading it will tell why.
 fn is_scene_document(path: &Path) -> bool {
+    const TABLES: [&str; 6] = ["camera", "environment", "material", "mesh", "object", "light"];
     let names_format = |line: &str| {
         line.split_once('=').is_some_and(|(key, value)| key.trim() == "format" && value.contains("lightcuts-scene"))
     };
-    path.is_file() && std::fs::read_to_string(path).is_ok_and(|text| text.lines().any(names_format))
+    let is_table = |line: &str| {
+        let name = line.trim().trim_start_matches('[').split(']').next().unwrap_or_default();
+        line.trim_start().starts_with('[') && TABLES.contains(&name.trim())
+    };
+    path.is_file()
+        && std::fs::read_to_string(path).is_ok_and(|text| text.lines().any(|line| names_format(line) || is_table(line)))
 }
 
 impl JobFile {
@@ -82,12 +92,18 @@ impl JobFile {
 
     fn new(name: &str, text: &str, directory: &Path, in_picture: bool) -> Result<Self, Failure> {
         let (head, settings) = checked(text).map_err(|error| toml_fault(name, text, &error))?;
+        if let Some(angle) = head.crease_angle.filter(|angle| !(0.0..=180.0).contains(angle)) {
+            let span = value_at(text, "crease-angle").map(|value| value.span()).unwrap_or_default();
+            let message = format!("crease-angle is {angle}");
+            return Err(fault(Exit::Usage, name, text, span, &message, "expected an angle from 0 to 180 degrees"));
+        }
         let find = |path: &String| path::find(path, directory, in_picture);
         Ok(Self {
             name: name.to_owned(),
             text: text.to_owned(),
             scene: head.scene.as_ref().map(find),
             search_path: head.search_path.iter().map(find).collect(),
+            crease_angle: head.crease_angle,
             read_vpls: head.read_vpls.as_ref().map(find),
             settings,
         })

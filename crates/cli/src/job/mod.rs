@@ -19,6 +19,8 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Job {
     pub(crate) scene: PathBuf,
     pub(crate) search_path: Vec<PathBuf>,
+    /// Angle in degrees in place of those of the scene's objects.
+    pub(crate) crease_angle: Option<f32>,
     pub(crate) read_vpls: Option<PathBuf>,
     pub(crate) settings: Settings,
 }
@@ -30,6 +32,8 @@ struct JobText<'a> {
     scene: String,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     search_path: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crease_angle: Option<f32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     read_vpls: Option<String>,
     #[serde(flatten)]
@@ -49,6 +53,7 @@ impl Job {
         toml::to_string(&JobText {
             scene: relative(&self.scene),
             search_path,
+            crease_angle: self.crease_angle,
             read_vpls: self.read_vpls.as_ref().map(relative),
             settings: &self.settings,
         })
@@ -66,13 +71,21 @@ mod tests {
         settings.gather.threshold = 1e-7 + f32::MIN_POSITIVE;
         settings.run.seed = u32::MAX;
         settings.display.global.max_display_luminance = 0.1;
-        let job = Job { scene: "a".into(), search_path: vec![".".into(), ".".into()], read_vpls: None, settings };
+        let job = Job {
+            scene: "a".into(),
+            search_path: vec![".".into(), ".".into()],
+            crease_angle: Some(0.1),
+            read_vpls: None,
+            settings,
+        };
         let text = job.to_toml(Path::new(".")).unwrap();
         let file = JobFile::parse("job.toml", &text, Path::new(".")).unwrap();
+        let file_angle = file.crease_angle;
         assert_eq!(
             resolve(&Settings::default(), &[file], &crate::args::SettingFlags::default()).unwrap(),
             job.settings
         );
+        assert!(file_angle == Some(0.1) && text.contains("crease-angle = 0.1\n"), "{text}");
         assert_eq!(text.matches("search-path = [\".\"]").count(), 1, "{text}");
         assert!(text.contains("radius = 1.1\n") && text.contains("max-display-luminance = 0.1\n"), "{text}");
     }

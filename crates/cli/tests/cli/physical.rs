@@ -108,8 +108,88 @@ fn scenes_of_the_thesis_can_be_rendered_with_it_and_not_the_other_way_round() {
         assert!(said.contains("has no meaning in the"), "{arguments}: {said}");
     }
     let said = stdout(&folder.run("info ball.toml").success());
-    assert!(said.contains("physical") && said.contains("1 luminous surface") && said.contains("2 lambert"), "{said}");
-    folder.run("info ball.toml --json").success();
+    assert!(said.contains("physical") && said.contains("1 emissive surface"), "{said}");
+}
+
+#[test]
+fn info_names_what_is_in_a_scene() {
+    let folder = folder();
+    folder.write("roof.obj", "v -1 0 0\nv 0 0.2 0\nv 1 0 0\nv -1 0 1\nv 0 0.2 1\nv 1 0 1\nf 1 4 5 2\nf 2 5 6 3\n");
+    let more = "[[light]]\ntype = 'spot'\nposition = [0, 3, 0]\ntarget = [0, 0, 0]\nintensity = 4\ninner = 20\nouter = 30\n\
+                [[mesh]]\nname = 'roof'\nfile = 'roof.obj'\n\
+                [[object]]\ntype = 'mesh'\nname = 'the roof'\nmesh = 'roof'\nmaterial = 'plastic'\ntranslate = [0, 2, 0]\n";
+    folder.write("roof.toml", SCENE.to_owned() + more);
+    let said = stdout(&folder.run("info roof.toml").success());
+    for line in [
+        "camera       fov 40 degrees; position (0, 1, 4), direction (0, -0.5, -4), up (0, 1, 0)",
+        "environment  none",
+        "lights       2; 1 emissive surface",
+        "  1  33    spot    at (0, 3, 0), towards (0, -3, 0)",
+        "intensity (4, 4, 4)",
+        "mesh roof  the roof  plastic   4          (-1, 2, 0) to (1, 2.2, 1)",
+        "  1  lambert  white",
+        "  2  plastic  plastic",
+        "smoothed     1 mesh without normals, up to 40 degrees between faces",
+    ] {
+        assert!(said.contains(line), "{line} is missing in\n{said}");
+    }
+    let json = |options: &str| -> serde_json::Value {
+        serde_json::from_str(&stdout(&folder.run(&format!("info roof.toml --json {options}")).success())).unwrap()
+    };
+    let info = json("");
+    assert_eq!((&info["camera"]["fov"], &info["lights"][1]["type"]), (&40.0.into(), &"sphere".into()));
+    assert_eq!(info["lights"][1]["value"][0], 20.0);
+    let roof = &info["objects"][2];
+    assert_eq!(
+        (&roof["name"], &roof["mesh"], &roof["crease_angle"]),
+        (&"the roof".into(), &"roof".into(), &40.0.into())
+    );
+    assert_eq!(info["materials"].as_array().map(Vec::len), Some(2), "those of lights are not among them");
+    assert_eq!(json("--crease-angle 25")["smoothed_meshes"], serde_json::json!({ "25": 1 }));
+    assert_eq!(json("--crease-angle 20")["smoothed_meshes"], serde_json::json!({}));
+    folder.run("info roof.toml --crease-angle 181").code(2);
+    folder.run("info scene.txt --crease-angle 30").code(2);
+}
+
+#[test]
+fn a_crease_angle_is_part_of_the_job() {
+    let folder = folder();
+    folder.run("render ball.toml --crease-angle 12.5 --size 8x8 --samples 1 -o a.exr --progress none").success();
+    assert!(folder.job_of("a.exr").contains("crease-angle = 12.5\n"), "{}", folder.job_of("a.exr"));
+    folder.run("render a.exr -o b.exr --progress none").success();
+    assert!(folder.job_of("b.exr").contains("crease-angle = 12.5\n"));
+    folder.write("job.toml", "scene = 'ball.toml'\ncrease-angle = 200\n");
+    let said = stderr(&folder.run("render job.toml").code(2));
+    assert!(said.contains("job.toml:2:16: crease-angle is 200"), "{said}");
+}
+
+#[test]
+fn what_is_not_there_or_lacks_its_head_is_a_scene() {
+    let folder = folder();
+    let said = stderr(&folder.run("render nothere.toml").code(3));
+    assert!(said.contains("cannot read the scene: `nothere.toml`"), "{said}");
+    folder.run("render --job nothere.toml").code(2);
+    folder.write("headless.toml", SCENE.replace("format = 'lightcuts-scene'\n", ""));
+    for command in ["render", "info"] {
+        let said = stderr(&folder.run(&format!("{command} headless.toml")).code(3));
+        assert!(said.contains("there is a `[camera]`, as in a scene, but the key `format` is missing"), "{said}");
+    }
+    folder.write("m.obj", "v 0 0 0\n");
+    let said = stderr(&folder.run("render m.obj").code(3));
+    assert!(said.contains("[[mesh]]") && said.contains("PATH:model.obj"), "{said}");
+}
+
+#[test]
+fn warnings_are_shown_beside_errors() {
+    let folder = folder();
+    folder.write("m.obj", "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    let mesh = "[[mesh]]\nname = 'm'\nfile = 'm.obj'\n[[object]]\ntype = 'mesh'\nmesh = 'm'\n";
+    folder.write("grey.toml", SCENE.to_owned() + mesh);
+    let assert = folder.run("render grey.toml --size 8x8 --samples 1 --progress none").success();
+    assert!(stderr(&assert).contains("`none.mtl` was not found") && stderr(&assert).contains("diffuse grey"));
+    folder.write("bad.toml", SCENE.to_owned() + mesh + "[[object]]\ntype = 'cone'\n");
+    let said = stderr(&folder.run("render bad.toml").code(3));
+    assert!(said.contains("`none.mtl` was not found") && said.contains("unknown type `cone`"), "{said}");
 }
 
 #[test]

@@ -19,7 +19,7 @@ pub(crate) struct Libraries {
 
 impl Libraries {
     /// Reads the libraries of the model at `path` and finds each of its materials in them. A material that is nowhere is
-    /// warned about; `fallback` says what its faces take then.
+    /// warned about; `fallback` says what becomes of its faces, to follow the words "its faces".
     pub(crate) fn of_model(
         &mut self,
         files: &mut Files<'_>,
@@ -39,7 +39,7 @@ impl Libraries {
         let mut find = |name: &str, place: &Fault| {
             let library = libraries.iter().rev().find(|library| library.get(name).is_some()).cloned();
             if library.is_none() {
-                let message = format!("the material `{name}` is not defined; its faces take {fallback}");
+                let message = format!("the material `{name}` is not defined; its faces {fallback}");
                 report.warn(|| place.clone().with_message(&message));
             }
             library

@@ -1,17 +1,18 @@
 //! MTL material libraries.
 
-use super::map_file::map_file;
+use super::map::MapStatement;
+use super::statement::{numbers, statements};
 use crate::Fault;
-use crate::number::{NUMBER_EXAMPLE, parse_number};
+use crate::lines::without_comment;
 use crate::report::Report;
 use crate::source::Source;
 use glam::Vec3;
-use lightcuts_scene::{MaterialDesc, TextureMode};
+use lightcuts_scene::MaterialDesc;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-/// Keywords of the format that the thesis' model of light has no use for.
-const IGNORED: [&str; 37] = [
+/// Keywords of the format that the thesis' model of light has no use for; the physical one has for some.
+const OTHERS: [&str; 38] = [
     "Ke",
     "Kt",
     "Tf",
@@ -48,17 +49,42 @@ const IGNORED: [&str; 37] = [
     "map_Pcr",
     "map_Tr",
     "map_opacity",
+    "map_norm",
     "Pmt",
 ];
 
 /// Unknown keywords that are worth a warning each.
 const MAX_UNKNOWN: usize = 16;
 
+/// The program that wrote a library, as far as it matters: some give numbers a meaning of their own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Writer {
+    /// Blender from 2.80 on; roughness 0 becomes this exponent `Ns`.
+    Blender { greatest_exponent: f32 },
+    /// Any other, or nobody knows.
+    Other,
+}
+
+impl Writer {
+    /// By the comment in the first line of a library.
+    fn of(text: &str) -> Self {
+        match text.lines().next().and_then(|line| line.strip_prefix("# Blender ")) {
+            // The exporter in Python, up to 3.0, names no version here.
+            Some(rest) if rest.starts_with("MTL File") => Self::Blender { greatest_exponent: 900.0 },
+            Some(_) => Self::Blender { greatest_exponent: 1000.0 },
+            None => Self::Other,
+        }
+    }
+}
+
 /// A library's text and what it defines.
 #[derive(Debug)]
 pub(crate) struct Library {
     source: Source<'static>,
+    writer: Writer,
     materials: HashMap<String, LibraryMaterial>,
+    /// Names that end in what may be a comment, by what they are without it.
+    commented: HashMap<String, String>,
 }
 
 /// A material as a library defines it. What the library leaves out has the value of [`MaterialDesc::default`].
@@ -66,8 +92,8 @@ pub(crate) struct Library {
 pub(crate) struct LibraryMaterial {
     /// Name, colours and exponent; the optical ratios are not the library's.
     pub(crate) desc: MaterialDesc,
-    /// File, mode and place of `map_Kd`.
-    pub(crate) texture: Option<(String, TextureMode, Range<usize>)>,
+    /// Where `map_Kd` is given.
+    pub(crate) texture: Option<Range<usize>>,
     /// Where each field of `desc` was given.
     spans: Vec<(&'static str, Range<usize>)>,
     /// The lines with keywords that the thesis' model has no use for, unread.
@@ -98,8 +124,15 @@ impl Library {
         self.source.name()
     }
 
+    pub(crate) fn writer(&self) -> Writer {
+        self.writer
+    }
+
+    /// The material of this name; of one that differs by a comment only, if there is none.
     pub(crate) fn get(&self, name: &str) -> Option<&LibraryMaterial> {
-        self.materials.get(name)
+        let short = without_comment(name).trim_ascii();
+        let commented = || self.materials.get(self.commented.get(short)?);
+        self.materials.get(name).or_else(|| self.materials.get(short)).or_else(commented)
     }
 
     /// A fault at a span of the library's text.
@@ -118,12 +151,12 @@ impl Library {
 
     /// The numbers of a line of the library.
     pub(crate) fn numbers(&self, line: Range<usize>, report: &mut Report) -> Option<Vec3> {
-        read_numbers(&self.source, report, self.value(&line), line)
+        numbers(&self.source, report, self.value(&line), line)
     }
 
-    /// The file name of a line of the library that is about a map.
-    pub(crate) fn file(&self, line: Range<usize>) -> &str {
-        map_file(self.value(&line)).0
+    /// A line of the library that is about a map.
+    pub(crate) fn map(&self, line: &Range<usize>) -> MapStatement<'_> {
+        MapStatement::parse(self.value(line))
     }
 
     fn value(&self, line: &Range<usize>) -> &str {
@@ -131,7 +164,7 @@ impl Library {
         line.split_once(|c: char| c.is_ascii_whitespace()).map_or("", |(_, value)| value.trim_ascii())
     }
 
-    /// Reads a library. Numbers that are none are errors; all else that is odd is a warning.
+    /// Reads a library. What is not a number where one is expected is an error; everything else that is odd is a warning.
     pub(crate) fn parse(name: &str, text: String, report: &mut Report) -> Self {
         let source = Source::new(name, text);
         let mut parser = Parser {
@@ -142,17 +175,27 @@ impl Library {
             unknown: HashSet::new(),
             orphans: false,
         };
-        let mut start = 0;
-        for line in source.text().split_inclusive('\n') {
+        for span in statements(source.text()) {
             if parser.report.is_full() {
                 break;
             }
-            parser.line(start, line);
-            start += line.len();
+            parser.line(span.start, &source.text()[span]);
         }
         parser.store();
-        let materials = parser.materials;
-        Self { source, materials }
+        let (materials, writer) = (parser.materials, Writer::of(source.text()));
+        let mut commented = HashMap::new();
+        for material in materials.values() {
+            let name = &material.desc.name;
+            let short = without_comment(name).trim_ascii();
+            if short.len() < name.len() {
+                // Of several the least: the order of a hash table is none.
+                let kept: &mut String = commented.entry(short.to_owned()).or_insert_with(|| name.clone());
+                if name < kept {
+                    kept.clone_from(name);
+                }
+            }
+        }
+        Self { source, writer, materials, commented }
     }
 }
 
@@ -197,8 +240,8 @@ impl Parser<'_> {
                     Some(LibraryMaterial { desc, texture: None, spans: vec![], others: vec![], defined: span });
             }
             "Ka" | "Kd" | "Ks" | "Ns" | "map_Kd" => self.value(keyword, value, span),
-            _ => match IGNORED.iter().find(|ignored| **ignored == keyword) {
-                Some(ignored) => self.other(ignored, span),
+            _ => match OTHERS.iter().find(|other| **other == keyword) {
+                Some(other) => self.other(other, span),
                 None => self.unknown_keyword(keyword, start..start + keyword.len()),
             },
         }
@@ -227,12 +270,12 @@ impl Parser<'_> {
             return;
         };
         if keyword == "map_Kd" {
-            let (file, mode) = map_file(value);
-            material.texture = (!file.is_empty()).then(|| (file.to_owned(), mode, span.clone()));
-            if file.is_empty() {
+            let is_empty = MapStatement::parse(value).is_empty();
+            material.texture = (!is_empty).then(|| span.clone());
+            if is_empty {
                 self.warn(span, "map_Kd names no file");
             }
-        } else if let Some(numbers) = read_numbers(self.source, self.report, value, span.clone()) {
+        } else if let Some(numbers) = numbers(self.source, self.report, value, span.clone()) {
             let field = match keyword {
                 "Ka" => "ambient",
                 "Kd" => "diffuse",
@@ -252,41 +295,10 @@ impl Parser<'_> {
     }
 }
 
-/// Up to three numbers; one alone stands for all three, as the format has it. `value` stands at the end of `span`.
-fn read_numbers(source: &Source<'_>, report: &mut Report, value: &str, span: Range<usize>) -> Option<Vec3> {
-    let value_start = span.end - value.len();
-    let mut numbers = [0.0; 3];
-    let mut count = 0;
-    for word in value.split_ascii_whitespace().take(3) {
-        if count == 0 && matches!(word, "spectral" | "xyz") {
-            let message = format!("`{word}` colours are not known; the value is ignored");
-            report.warn(|| source.fault(span, &message));
-            return None;
-        }
-        match parse_number(word) {
-            Ok(number) => numbers[count] = number,
-            Err(error) => {
-                let start = value_start + (word.as_ptr() as usize - value.as_ptr() as usize);
-                let message = error.message(word);
-                report.error(|| source.fault(start..start + word.len(), &message).expected(NUMBER_EXAMPLE));
-                return None;
-            }
-        }
-        count += 1;
-    }
-    match count {
-        0 => {
-            report.error(|| source.fault(span, "the value is missing").expected(NUMBER_EXAMPLE));
-            None
-        }
-        3 => Some(Vec3::from_array(numbers)),
-        _ => Some(Vec3::new(numbers[0], if count == 2 { numbers[1] } else { numbers[0] }, numbers[0])),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lightcuts_scene::TextureMode;
 
     fn library(text: &str) -> (Library, Vec<String>, Vec<String>) {
         let mut report = Report::default();
@@ -307,7 +319,31 @@ mod tests {
         assert_eq!((material.ambient, material.diffuse), (Vec3::new(0.1, 0.2, 0.3), Vec3::splat(0.5)));
         assert_eq!((material.specular, material.exponent), (Vec3::ONE, 30.0));
         let texture = library.get("c").and_then(|c| c.texture.clone()).expect("it has one");
-        assert_eq!((texture.0.as_str(), texture.1), ("t u.png", TextureMode::Straight));
+        assert_eq!(library.map(&texture).mode, TextureMode::Straight);
+        assert_eq!(library.map(&texture).names().collect::<Vec<_>>(), ["t u.png"]);
+    }
+
+    #[test]
+    fn comments_and_long_lines_are_read_as_the_format_has_them() {
+        let (library, errors, warnings) = library(
+            "# c:\\path\\\nnewmtl a # red\r\nKd .1 .2 \\\r\n .3 # first\nKs 1# white\nNs \\\n 30\nnewmtl Material #25\nKd 1\n\
+             newmtl x\nKd xyz 0.9505 1 1.089",
+        );
+        assert_eq!((errors.len(), warnings.len()), (0, 0), "{errors:?} {warnings:?}");
+        let a = &library.get("a").expect("a comment is no name").desc;
+        assert_eq!((a.diffuse, a.specular, a.exponent), (Vec3::new(0.1, 0.2, 0.3), Vec3::ONE, 30.0));
+        assert!(library.get("a # other").is_some() && library.get("b").is_none());
+        assert_eq!(library.get("Material #25").expect("it is").desc.name, "Material #25");
+        let white = library.get("x").expect("it is").desc.diffuse;
+        assert!((white - Vec3::ONE).abs().max_element() < 1e-3, "{white}");
+    }
+
+    #[test]
+    fn writers_are_told_by_the_first_line() {
+        let writer = |line: &str| library(&format!("{line}\nnewmtl a\n")).0.writer();
+        assert_eq!(writer("# Blender 5.2.3 LTS MTL File: 'None'"), Writer::Blender { greatest_exponent: 1000.0 });
+        assert_eq!(writer("# Blender MTL File: 'a.blend'"), Writer::Blender { greatest_exponent: 900.0 });
+        assert_eq!((writer("# Wavefront material file"), writer("")), (Writer::Other, Writer::Other));
     }
 
     #[test]

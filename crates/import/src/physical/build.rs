@@ -27,13 +27,21 @@ pub(super) struct Builder<'d> {
     pub(super) models: Models,
     pub(super) scene: PhysicalScene,
     pub(super) places: Places<'d>,
+    /// Angle that takes the place of every object's `crease-angle`.
+    pub(super) crease_degrees: Option<f32>,
     /// Materials by name.
     materials: HashMap<String, SurfaceId>,
 }
 
 impl<'d> Builder<'d> {
-    pub(super) fn new(source: &'d Source<'d>, resolver: &'d dyn Resolver, limits: &'d Limits) -> Self {
+    pub(super) fn new(
+        source: &'d Source<'d>,
+        resolver: &'d dyn Resolver,
+        limits: &'d Limits,
+        crease_degrees: Option<f32>,
+    ) -> Self {
         Self {
+            crease_degrees,
             reader: Reader::new(source),
             files: Files::new(resolver, limits),
             images: Images::default(),
@@ -56,6 +64,8 @@ impl<'d> Builder<'d> {
         self.each(&meshes, Self::mesh);
         self.each(&objects, Self::object);
         self.each(&lights, Self::light);
+        // Whatever takes too much memory was reported.
+        let _ = self.smooth_meshes();
         self.view(document);
         self.finish(!objects.is_empty(), !lights.is_empty())
     }
@@ -87,7 +97,7 @@ impl<'d> Builder<'d> {
         let Some(list) = document.get(key) else { return Vec::new() };
         let tables: Option<Vec<Table<'d>>> = list.items().and_then(|items| items.map(Value::table).collect());
         tables.unwrap_or_else(|| {
-            self.reader.error(list.span(), &format!("`{key}` is no list of tables"), &format!("`[[{key}]]`"));
+            self.reader.error(list.span(), &format!("`{key}` is not a list of tables"), &format!("`[[{key}]]`"));
             Vec::new()
         })
     }
@@ -148,7 +158,7 @@ impl<'d> Builder<'d> {
         let value = document.get(key)?;
         let table = value.table();
         if table.is_none() {
-            self.reader.error(value.span(), &format!("`{key}` is no table"), &format!("`[{key}]`"));
+            self.reader.error(value.span(), &format!("`{key}` is not a table"), &format!("`[{key}]`"));
         }
         table
     }

@@ -34,7 +34,10 @@ pub(super) fn camera(reader: &mut Reader<'_>, table: Table<'_>) -> Option<Physic
 fn view(reader: &mut Reader<'_>, table: Table<'_>, default: View) -> Option<View> {
     Some(match reader.at_most_one(table, &["fov", "height"])? {
         Some("height") => View::Orthographic { height: reader.required(table, "height", NUMBER)? },
-        Some(fov) => View::Perspective { degrees: reader.required(table, fov, NUMBER)? },
+        Some(fov) => {
+            reader.warn_of_radians(table, fov);
+            View::Perspective { degrees: reader.required(table, fov, NUMBER)? }
+        }
         None => default,
     })
 }

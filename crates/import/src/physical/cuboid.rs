@@ -34,6 +34,7 @@ pub(super) fn unit_cube() -> MeshDesc {
         normals: Vec::new(),
         texture_coordinates: CORNERS.to_vec(),
         triangles: triangles.map(triangle).collect(),
+        crease_degrees: None,
     }
 }
 

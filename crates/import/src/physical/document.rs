@@ -15,6 +15,9 @@ const FORMAT: &str = "lightcuts-scene";
 /// The only version so far.
 const VERSION: i64 = 1;
 
+/// Tables by which a scene is known that lacks its head.
+const TABLES: [&str; 6] = ["camera", "environment", "material", "mesh", "object", "light"];
+
 /// What a person reads who opens another file.
 const HEADER_EXAMPLE: &str = "a scene that starts with `format = \"lightcuts-scene\"` and `version = 1`";
 
@@ -27,7 +30,7 @@ pub(super) struct Table<'d> {
     end: usize,
 }
 
-/// The document of a text. Fails for a text that is no TOML, too long, or no scene.
+/// The document of a text. Fails for a text that is not TOML, too long, or not a scene.
 pub(super) fn parse<'d>(source: &'d Source<'d>, limits: &Limits) -> Result<Spanned<DeTable<'d>>, ImportError> {
     let text = source.text();
     if text.len() as u64 > limits.document_bytes {
@@ -48,8 +51,18 @@ fn toml_fault(source: &Source<'_>, error: &toml::de::Error) -> Fault {
 fn check_header(source: &Source<'_>, document: &Spanned<DeTable<'_>>) -> Result<(), ImportError> {
     let table = Table::of(document);
     if table.get("format").is_none() {
-        let message = "this is no scene: the key `format` is missing (a job file names its scene with the key `scene`)";
-        return Err(source.fault(0..0, message).expected(HEADER_EXAMPLE).into());
+        let part = TABLES.iter().find_map(|key| Some((*key, table.get(key)?)));
+        let message = match part {
+            Some((key, value)) => {
+                let shown = if value.items().is_some() { format!("[[{key}]]") } else { format!("[{key}]") };
+                format!("there is a `{shown}`, as in a scene, but the key `format` is missing")
+            }
+            None => {
+                "this is not a scene: the key `format` is missing (a job file names its scene with the key `scene`)"
+                    .to_owned()
+            }
+        };
+        return Err(source.fault(0..0, &message).expected(HEADER_EXAMPLE).into());
     }
     let mut reader = Reader::new(source);
     if let Some(format) = reader.required(table, "format", TEXT)
@@ -60,7 +73,7 @@ fn check_header(source: &Source<'_>, document: &Spanned<DeTable<'_>>) -> Result<
     if let Some(version) = reader.required(table, "version", WHOLE)
         && version != VERSION
     {
-        reader.error_at(table, "version", &format!("version {version} of the format is not known"), "1");
+        reader.error_at(table, "version", &format!("version {version} of the format is not supported"), "1");
     }
     Ok(reader.report.finish().map(|_| ())?)
 }
@@ -120,13 +133,19 @@ mod tests {
     #[test]
     fn other_files_are_told_what_a_scene_is() {
         let other = message("scene = \"a.txt\"\n");
-        assert!(other.starts_with("a.toml:1:1: this is no scene: the key `format` is missing"), "{other}");
+        assert!(other.starts_with("a.toml:1:1: this is not a scene: the key `format` is missing"), "{other}");
         assert!(other.contains("expected a scene that starts with `format = \"lightcuts-scene\"`"), "{other}");
+        let headless = message("[[object]]\ntype = \"mesh\"\n");
+        assert!(
+            headless.starts_with("a.toml:1:1: there is a `[[object]]`, as in a scene, but the key `format`"),
+            "{headless}"
+        );
+        assert!(message("[camera]\n").contains("there is a `[camera]`"));
         assert!(message("format = \"x\"\nversion = 1").starts_with("a.toml:1:10: `format` is `x`; expected a scene"));
-        assert!(message("format = 3").starts_with("a.toml:1:10: `format` is a number; expected a text"));
+        assert!(message("format = 3").starts_with("a.toml:1:10: `format` is a number; expected a string"));
         assert!(message("format = \"lightcuts-scene\"").starts_with("a.toml:1:1: `version` is missing; expected"));
         let newer = message("format = \"lightcuts-scene\"\nversion = 2");
-        assert_eq!(newer, "a.toml:2:11: version 2 of the format is not known; expected 1");
+        assert_eq!(newer, "a.toml:2:11: version 2 of the format is not supported; expected 1");
     }
 
     #[test]

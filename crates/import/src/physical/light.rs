@@ -55,8 +55,8 @@ impl<'d> Builder<'d> {
                 direction: self.reader.required(table, "direction", VECTOR)?,
                 irradiance: self.reader.required(table, "irradiance", COLOR)?,
             },
-            Type::Rectangle => return self.luminous_rectangle(table),
-            Type::Sphere => return self.luminous_sphere(table),
+            Type::Rectangle => return self.emissive_rectangle(table),
+            Type::Sphere => return self.emissive_sphere(table),
         };
         self.scene.lights.push(EmitterDesc { kind: emitter, location: self.reader.locate(table) });
         self.places.lights.push(table);
@@ -75,6 +75,7 @@ impl<'d> Builder<'d> {
             "target" => (self.reader.required(table, "target", POSITION)? - position).as_vec3(),
             direction => self.reader.required(table, direction, VECTOR)?,
         };
+        self.reader.warn_of_radians(table, "outer");
         Some(EmitterKind::Spot {
             position,
             direction,
@@ -84,22 +85,22 @@ impl<'d> Builder<'d> {
         })
     }
 
-    fn luminous_rectangle(&mut self, table: Table<'d>) -> Option<()> {
+    fn emissive_rectangle(&mut self, table: Table<'d>) -> Option<()> {
         let shape = self.rectangle(table)?;
         let two_sided = self.reader.or(table, "two-sided", FLAG, false)?;
         let PhysicalShape::Rectangle { width, height, .. } = shape else { return None };
         let sides = if two_sided { 2.0 } else { 1.0 };
         // The same radiance in all directions leaves pi times as much power per area.
         let radiance = self.strength(table, "radiance", 1.0 / (PI * width * height * sides))?;
-        self.push_luminous(table, shape, radiance, two_sided);
+        self.push_emissive(table, shape, radiance, two_sided);
         Some(())
     }
 
-    fn luminous_sphere(&mut self, table: Table<'d>) -> Option<()> {
+    fn emissive_sphere(&mut self, table: Table<'d>) -> Option<()> {
         let shape = self.sphere(table)?;
         let PhysicalShape::Sphere { radius, .. } = shape else { return None };
         let radiance = self.strength(table, "radiance", 1.0 / (4.0 * PI * PI * radius * radius))?;
-        self.push_luminous(table, shape, radiance, false);
+        self.push_emissive(table, shape, radiance, false);
         Some(())
     }
 
@@ -112,8 +113,8 @@ impl<'d> Builder<'d> {
         Some(if given == key { value } else { value * factor })
     }
 
-    /// A luminous surface is an object that is black but for its own light.
-    fn push_luminous(&mut self, table: Table<'d>, shape: PhysicalShape, radiance: Vec3, two_sided: bool) {
+    /// An emissive surface is an object that is black but for its own light.
+    fn push_emissive(&mut self, table: Table<'d>, shape: PhysicalShape, radiance: Vec3, two_sided: bool) {
         let black = SurfaceDesc {
             scattering: Scattering::Lambert { albedo: Vec3::ZERO.into() },
             emission: Some(EmissionDesc { radiance, image: None, two_sided }),

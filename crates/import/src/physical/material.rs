@@ -21,7 +21,7 @@ const COAT_ROUGHNESS: f32 = 0.1;
 /// Share from which on a masked surface is there.
 pub(super) const THRESHOLD: f32 = 0.5;
 
-/// Colour of what is matt where none is given.
+/// Colour of diffuse materials where none is given.
 const GREY: Vec3 = Vec3::splat(0.5);
 
 #[derive(Debug, Clone, Copy)]

@@ -2,13 +2,15 @@
 
 use super::build::Builder;
 use super::document::Table;
-use super::library;
+use super::library::{self, Converted};
 use super::places::MaterialPlace;
+use super::smoothing::Smoothing;
 use super::value::{FILE, MESH, TEXT, Value};
 use super::words::did_you_mean;
 use crate::files::AssetError;
-use crate::model::{Model, ModelFormat};
-use crate::obj::Libraries;
+use crate::model::{self, Model, ModelFormat};
+use crate::obj::{Libraries, MapPlacement};
+use crate::polygon::Cut;
 use lightcuts_scene::physical::{SurfaceDesc, SurfaceId};
 use lightcuts_scene::{MeshDesc, MeshId};
 use std::collections::HashMap;
@@ -26,10 +28,20 @@ pub(super) struct Models {
     files: HashMap<PathBuf, Option<MeshId>>,
     /// The models behind meshes, until their materials are asked for.
     loaded: HashMap<MeshId, Loaded>,
-    /// The material of an object that names none, by its mesh; `None` if the model has none of its own.
-    own: HashMap<MeshId, Option<SurfaceId>>,
+    /// What an object that names no material takes, by its mesh; `None` if the model has no materials of its own.
+    own: HashMap<MeshId, Option<Own>>,
     libraries: Libraries,
+    pub(super) smoothing: Smoothing,
     pub(super) unit_cube: Option<MeshId>,
+}
+
+/// A mesh with the materials of its model's libraries.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Own {
+    /// That of faces which have no other.
+    pub(super) material: SurfaceId,
+    /// The mesh itself, or a copy whose texture coordinates are as the materials want them.
+    pub(super) mesh: MeshId,
 }
 
 /// A model whose triangles are in the scene.
@@ -72,7 +84,8 @@ impl<'d> Builder<'d> {
         let format = ModelFormat::of(&path).ok_or_else(|| format!("`{file}` ends neither in .obj nor in .ply"))?;
         let span = table.get("file").map_or(table.span(), Value::span);
         let place = self.reader.source.fault(span, "");
-        let model = Model::load(&mut self.files, &path, format, &place, &mut self.reader.report).map_err(told)?;
+        let model = Model::load(&mut self.files, &path, format, Cut::Outlines, &place, &mut self.reader.report)
+            .map_err(told)?;
         let mesh = model.map(|model| self.push_model(table, name, model, path));
         self.models.files.insert(identity, mesh);
         Ok(mesh)
@@ -82,6 +95,7 @@ impl<'d> Builder<'d> {
         let mut mesh = std::mem::take(&mut model.mesh);
         name.clone_into(&mut mesh.name);
         let id = self.push_mesh(table, mesh);
+        self.models.smoothing.add_groups(id, std::mem::take(&mut model.smoothing));
         self.models.loaded.insert(id, Loaded { path, model });
         id
     }
@@ -105,8 +119,8 @@ impl<'d> Builder<'d> {
         None
     }
 
-    /// The material of an object that names none: its mesh has materials of its own.
-    pub(super) fn own_material(&mut self, table: Table<'d>, mesh: MeshId) -> Option<SurfaceId> {
+    /// What an object takes that names no material: its model has some, or names some that are nowhere.
+    pub(super) fn own_material(&mut self, table: Table<'d>, mesh: MeshId) -> Option<Own> {
         let own = if let Some(known) = self.models.own.get(&mesh) {
             *known
         } else {
@@ -122,22 +136,85 @@ impl<'d> Builder<'d> {
         own
     }
 
-    /// Dresses a mesh in the materials of its model's libraries. `None` if there are none.
-    fn assign(&mut self, table: Table<'d>, mesh: MeshId, loaded: &Loaded) -> Option<SurfaceId> {
+    /// Assigns the materials of the model's libraries to the faces of a mesh. `None` if the model names neither.
+    fn assign(&mut self, table: Table<'d>, mesh: MeshId, loaded: &Loaded) -> Option<Own> {
         let Loaded { path, model } = loaded;
         let report = &mut self.reader.report;
-        let found = self.models.libraries.of_model(&mut self.files, report, model, path, "a matt grey");
-        let ids: Vec<Option<SurfaceId>> = std::iter::zip(&model.materials, found)
+        let found = self.models.libraries.of_model(&mut self.files, report, model, path, "are diffuse grey");
+        if model.materials.is_empty() && model.libraries.is_empty() {
+            return None;
+        }
+        let converted: Vec<Option<Converted>> = std::iter::zip(&model.materials, found)
             .map(|((name, _), library)| library::material(self, &library?, name))
             .collect();
-        let first = ids.iter().flatten().next().copied()?;
-        let triangles = &mut self.scene.meshes[mesh.0 as usize].triangles;
+        let copy = self.placed_copy(table, mesh, model, &converted)?;
+        let triangles = &mut self.scene.meshes[copy.0 as usize].triangles;
         for (run, material) in model.material_runs(triangles.len()) {
-            triangles[run].iter_mut().for_each(|triangle| triangle.material = ids[material]);
+            let id = converted[material].map(|converted| converted.id);
+            triangles[run].iter_mut().for_each(|triangle| triangle.material = id);
         }
-        if triangles.iter().all(|triangle| triangle.material.is_some()) {
-            return Some(first);
+        let is_complete = triangles.iter().all(|triangle| triangle.material.is_some());
+        let first = converted.iter().flatten().next().filter(|_| is_complete).map(|first| first.id);
+        let grey = || self.push_material(SurfaceDesc::default(), MaterialPlace::Table(table));
+        Some(Own { material: first.unwrap_or_else(grey), mesh: copy })
+    }
+
+    /// The mesh, or where maps are scaled or shifted a copy with texture coordinates that are: an object with a material of its
+    /// own may use the mesh as it is. `None` (reported) if that takes too much memory.
+    fn placed_copy(
+        &mut self,
+        table: Table<'d>,
+        mesh: MeshId,
+        model: &Model,
+        converted: &[Option<Converted>],
+    ) -> Option<MeshId> {
+        let placements: Vec<MapPlacement> =
+            converted.iter().map(|material| material.map_or_else(MapPlacement::default, |m| m.placement)).collect();
+        if placements.iter().all(|placement| *placement == MapPlacement::default()) {
+            return Some(mesh);
         }
-        Some(self.push_material(SurfaceDesc::default(), MaterialPlace::Table(table)))
+        let copy = self.copy_mesh(table, mesh)?;
+        self.models.smoothing.copy_groups(mesh, copy);
+        let mesh = &mut self.scene.meshes[copy.0 as usize];
+        for (run, material) in model.material_runs(mesh.triangles.len()) {
+            place_coordinates(mesh, run, placements[material]);
+        }
+        Some(copy)
+    }
+
+    /// Adds a mesh once more. `None` (reported) if that takes too much memory.
+    pub(super) fn copy_mesh(&mut self, table: Table<'d>, mesh: MeshId) -> Option<MeshId> {
+        let copy = self.scene.meshes[mesh.0 as usize].clone();
+        self.count_elements(table, model::elements(&copy))?;
+        Some(self.push_mesh(table, copy))
+    }
+
+    /// Counts what a mesh costs more. `None` (reported) if it is too much.
+    pub(super) fn count_elements(&mut self, table: Table<'_>, elements: usize) -> Option<()> {
+        self.files.elements = self.files.elements.saturating_add(elements);
+        let limit = self.files.limits.mesh_elements;
+        if self.files.elements > limit {
+            self.reader.error(table.span(), &model::too_large(limit), "fewer or smaller models");
+            return None;
+        }
+        Some(())
+    }
+}
+
+/// Gives triangles texture coordinates of their own, as a material's maps want them.
+fn place_coordinates(mesh: &mut MeshDesc, triangles: std::ops::Range<usize>, placement: MapPlacement) {
+    if placement == MapPlacement::default() {
+        return;
+    }
+    let mut placed: HashMap<u32, u32> = HashMap::new();
+    let all = &mut mesh.texture_coordinates;
+    let mut index = |old: u32| {
+        *placed.entry(old).or_insert_with(|| {
+            all.push(placement.apply(all[old as usize]));
+            all.len() as u32 - 1
+        })
+    };
+    for triangle in &mut mesh.triangles[triangles] {
+        triangle.texture_coordinates = triangle.texture_coordinates.map(|corners| corners.map(&mut index));
     }
 }

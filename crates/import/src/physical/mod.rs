@@ -40,6 +40,7 @@ mod object;
 mod placement;
 mod places;
 mod reader;
+mod smoothing;
 mod value;
 mod words;
 
@@ -58,8 +59,19 @@ pub fn parse_physical(
     resolver: &dyn Resolver,
     limits: &Limits,
 ) -> Result<Imported<PhysicalScene>, ImportError> {
+    parse_creased(text, name, resolver, limits, None)
+}
+
+/// The same with an angle in degrees that takes the place of every object's `crease-angle`.
+pub(crate) fn parse_creased(
+    text: &str,
+    name: &str,
+    resolver: &dyn Resolver,
+    limits: &Limits,
+    crease_degrees: Option<f32>,
+) -> Result<Imported<PhysicalScene>, ImportError> {
     let source = Source::new(name, text.strip_prefix('\u{feff}').unwrap_or(text));
     let document = document::parse(&source, limits)?;
     let document = document::Table::of(&document);
-    build::Builder::new(&source, resolver, limits).run(document, name)
+    build::Builder::new(&source, resolver, limits, crease_degrees).run(document, name)
 }

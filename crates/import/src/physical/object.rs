@@ -4,6 +4,7 @@ use super::build::Builder;
 use super::cuboid;
 use super::document::Table;
 use super::placement::{self, placement};
+use super::smoothing::{CREASE_DEGREES, Crease};
 use super::value::{FLAG, NUMBER, POSITION, TEXT, VECTOR};
 use glam::{DAffine3, DQuat};
 use lightcuts_scene::MeshId;
@@ -27,7 +28,7 @@ impl Type {
     /// How it is called, and its own keys.
     fn keys(self) -> (&'static str, [&'static [&'static str]; 2]) {
         match self {
-            Self::Mesh => ("a mesh object", [&["mesh", "smooth"], &placement::KEYS]),
+            Self::Mesh => ("a mesh object", [&["mesh", "smooth", "crease-angle"], &placement::KEYS]),
             Self::Sphere => ("a sphere", [&["center", "radius"], &[]]),
             Self::Rectangle => ("a rectangle", [&["center", "normal", "head", "width", "height"], &[]]),
             Self::Box => ("a box", [&["center", "size"], &placement::KEYS]),
@@ -41,7 +42,7 @@ impl<'d> Builder<'d> {
         let (what, [own, shared]) = kind.keys();
         table.check_keys(&mut self.reader, what, &[&COMMON, own, shared])?;
         let name = self.reader.or(table, "name", TEXT, String::new())?;
-        // A mesh may bring its own materials; all else wears what is said here.
+        // A mesh may bring its own materials; all else has what is said here.
         let given = if kind == Type::Mesh && !table.has("material") {
             None
         } else {
@@ -57,10 +58,16 @@ impl<'d> Builder<'d> {
             (Some(material), _) => material,
             (None, PhysicalShape::Mesh { mesh, override_material, .. }) => {
                 *override_material = false;
-                self.own_material(table, *mesh)?
+                let own = self.own_material(table, *mesh)?;
+                *mesh = own.mesh;
+                own.material
             }
             (None, _) => return None,
         };
+        if kind == Type::Mesh && matches!(shape, PhysicalShape::Mesh { smooth: true, .. }) {
+            let crease = self.crease(table)?;
+            self.models.smoothing.want(self.scene.objects.len(), crease);
+        }
         let location = self.reader.locate(table);
         self.push_object(table, PhysicalObject { name, shape, material, location });
         Some(())
@@ -78,6 +85,21 @@ impl<'d> Builder<'d> {
             smooth: self.reader.or(table, "smooth", FLAG, true)?,
             override_material: true,
         })
+    }
+
+    /// The angle of the import, of the object, or of all objects that say nothing.
+    fn crease(&mut self, table: Table<'_>) -> Option<Crease> {
+        let given = self.reader.optional(table, "crease-angle", NUMBER)?;
+        if let Some(degrees) = given
+            && !(0.0..=180.0).contains(&degrees)
+        {
+            let message = format!("`crease-angle` is {degrees}");
+            self.reader.error_at(table, "crease-angle", &message, "an angle from 0 to 180 degrees");
+            return None;
+        }
+        self.reader.warn_of_radians(table, "crease-angle");
+        let given = self.crease_degrees.or(given);
+        Some(Crease { degrees: given.unwrap_or(CREASE_DEGREES), is_given: given.is_some() })
     }
 
     pub(super) fn sphere(&mut self, table: Table<'_>) -> Option<PhysicalShape> {

@@ -49,7 +49,7 @@ fn rotations(reader: &mut Reader<'_>, value: Value<'_>) -> Option<DQuat> {
 fn rotation(reader: &mut Reader<'_>, value: Value<'_>) -> Option<DQuat> {
     let Some(table) = value.table() else {
         let example = "a rotation such as { axis = [0, 1, 0], degrees = 45 }, or a list of such";
-        reader.error(value.span(), "`rotate` is no table", example);
+        reader.error(value.span(), "`rotate` is not a table", example);
         return None;
     };
     table.check_keys(reader, "a rotation", &[&["axis", "degrees"]])?;

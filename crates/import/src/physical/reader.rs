@@ -1,11 +1,12 @@
 //! Reads the values of tables, and reports what they cannot be.
 
 use super::document::Table;
-use super::value::{Kind, Read, TEXT, Value};
+use super::value::{Kind, NUMBER, Read, TEXT, Value};
 use super::words::{did_you_mean, either, listed};
 use crate::report::Report;
 use crate::source::Source;
 use lightcuts_scene::Location;
+use std::f32::consts::PI;
 use std::ops::Range;
 
 /// Makes something of values, and reports those of which it cannot: `None` means that an error was reported.
@@ -46,6 +47,19 @@ impl<'d> Reader<'d> {
 
     pub(super) fn warn(&mut self, span: Range<usize>, message: &str) {
         self.report.warn(|| self.source.fault(span, message));
+    }
+
+    /// Warns about an angle above 0 that would be more likely in radians than in degrees.
+    pub(super) fn warn_of_radians(&mut self, table: Table<'_>, key: &str) {
+        let Some(value) = table.get(key) else { return };
+        if let Read::Good(angle) = (NUMBER.read)(value)
+            && angle > 0.0
+            && angle <= PI
+        {
+            let degrees = angle.to_degrees();
+            let message = format!("`{key}` is {angle} degrees; {angle} radians would be {degrees:.4} degrees");
+            self.warn(value.span(), &message);
+        }
     }
 
     /// Reads a value as of this kind.
@@ -121,7 +135,7 @@ impl<'d> Reader<'d> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::value::{COLOR, FLAG, MATRIX, NUMBER, VECTOR, WHOLE};
+    use super::super::value::{COLOR, FLAG, MATRIX, VECTOR, WHOLE};
     use super::*;
     use glam::Vec3;
     use toml::de::DeTable;
@@ -158,12 +172,12 @@ mod tests {
             let error = read(text, VECTOR).expect_err(text);
             assert!(error.starts_with(&format!("a.toml:1:{message}; expected three numbers")), "{error}");
         };
-        refused("a = 'x'", "5: `a` is a text");
+        refused("a = 'x'", "5: `a` is a string");
         refused("a = {}", "5: `a` is a table");
         refused("a = true", "5: `a` is true or false");
         refused("a = 1979-05-27", "5: `a` is a date");
         refused("a = [1, 2]", "5: `a` has 2 items instead of 3");
-        refused("a = [1, 'x', 2]", "9: `a` holds a text");
+        refused("a = [1, 'x', 2]", "9: `a` holds a string");
         refused("a = [1, 2, nan]", "12: `a` is not a number");
         refused("a = [1, -inf, 2]", "9: `a` is too large for a 32-bit number");
         refused("a = [1, 1e39, 2]", "9: `a` is too large for a 32-bit number");

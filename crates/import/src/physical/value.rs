@@ -49,7 +49,7 @@ pub(super) const VECTOR: Kind<Vec3> = Kind { expected: "three numbers such as [0
 pub(super) const POSITION: Kind<DVec3> = Kind { expected: VECTOR.expected, read: position };
 pub(super) const COLOR: Kind<Vec3> = Kind { expected: "a number or three such as [0.8, 0.5, 0.2]", read: color };
 pub(super) const FACTORS: Kind<DVec3> = Kind { expected: "a number or three such as [1, 2, 1]", read: factors };
-pub(super) const TEXT: Kind<String> = Kind { expected: "a text such as \"name\"", read: text };
+pub(super) const TEXT: Kind<String> = Kind { expected: "a string such as \"name\"", read: text };
 pub(super) const FILE: Kind<String> = Kind { expected: "the name of a file such as \"model.obj\"", read: text };
 pub(super) const MATERIAL: Kind<String> = Kind { expected: "the name of a [[material]]", read: text };
 pub(super) const MESH: Kind<String> = Kind { expected: "the name of a [[mesh]]", read: text };
@@ -79,7 +79,7 @@ impl<'d> Value<'d> {
     /// What it is, for messages.
     pub(super) fn kind(self) -> &'static str {
         match self.content {
-            DeValue::String(_) => "a text",
+            DeValue::String(_) => "a string",
             DeValue::Integer(_) | DeValue::Float(_) => "a number",
             DeValue::Boolean(_) => "true or false",
             DeValue::Datetime(_) => "a date",

@@ -173,7 +173,7 @@ impl Parser<'_> {
             ["property", ..] => self.property(&words),
             [word, ..] => {
                 // Some writers forget the word `comment`.
-                let message = format!("`{word}` is no keyword of a PLY header: the line is ignored");
+                let message = format!("`{word}` is not a keyword of a PLY header: the line is ignored");
                 report.warn(|| self.fault(&message));
                 Ok(())
             }
@@ -188,7 +188,7 @@ impl Parser<'_> {
             _ => None,
         };
         let expected = "`format ascii 1.0`, `format binary_little_endian 1.0` or `format binary_big_endian 1.0`";
-        self.encoding.map_or_else(|| Err(self.error("the format is not known", expected)), |_| Ok(()))
+        self.encoding.map_or_else(|| Err(self.error("the format is unknown", expected)), |_| Ok(()))
     }
 
     fn element(&mut self, words: &[&str]) -> Result<(), ReadError> {
@@ -228,7 +228,7 @@ impl Parser<'_> {
     fn number_type(&self, name: &str) -> Result<Number, ReadError> {
         Number::of_name(name).ok_or_else(|| {
             let names: Vec<&str> = Number::NAMES.iter().map(|(old, _, _)| *old).collect();
-            self.error(&format!("`{name}` is no type"), &format!("one of {}", names.join(", ")))
+            self.error(&format!("`{name}` is not a type"), &format!("one of {}", names.join(", ")))
         })
     }
 

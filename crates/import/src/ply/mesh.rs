@@ -4,6 +4,8 @@ use super::header::{Element, Header, Property};
 use super::values::{Row, Values};
 use crate::lines::ReadError;
 use crate::model;
+use crate::polygon::{Cut, Faces};
+use crate::report::Report;
 use glam::Vec3;
 use lightcuts_scene::{MeshDesc, MeshTriangle};
 
@@ -14,15 +16,26 @@ const SLOTS: usize = 8;
 const TEXTURE_COORDINATES: [(&str, &str); 4] =
     [("u", "v"), ("s", "t"), ("texture_u", "texture_v"), ("texture_s", "texture_t")];
 
+/// Names of the red channel of colours that occur.
+const REDS: [&str; 4] = ["red", "r", "diffuse_red", "diffuse_r"];
+
 /// Reads the body of a file as a mesh of at most `room` vertices, normals, texture coordinates and triangles together.
-pub(super) fn read(header: &Header, values: &mut Values<'_>, room: usize) -> Result<MeshDesc, ReadError> {
+pub(super) fn read(
+    header: &Header,
+    values: &mut Values<'_>,
+    room: usize,
+    cut: Cut,
+    report: &mut Report,
+) -> Result<MeshDesc, ReadError> {
     let Some(vertices) = header.element("vertex") else {
         let fault = header.fault(values.file(), "the model has no vertices");
         return Err(ReadError::Content(Box::new(fault.expected("an element `vertex`"))));
     };
     let layout = Layout::new(vertices, values.file())?;
-    let mut reader = Reader { mesh: MeshDesc::default(), layout, vertices, room, corners: Vec::new() };
+    let (mesh, faces) = (MeshDesc::default(), Faces::new(cut));
+    let mut reader = Reader { mesh, layout, vertices, room, corners: Vec::new(), faces };
     reader.check_counts(header, values)?;
+    warn_unused(header, &reader.layout, values.file(), report);
     for element in &header.elements {
         match element.name.as_str() {
             "vertex" => reader.vertices(values)?,
@@ -30,7 +43,29 @@ pub(super) fn read(header: &Header, values: &mut Values<'_>, room: usize) -> Res
             _ => skip(element, values)?,
         }
     }
+    reader.faces.cut_late(&mut reader.mesh);
+    reader.faces.warn(report);
     Ok(reader.mesh)
+}
+
+/// Warns about colours, texture coordinates of faces, and elements that are not used.
+fn warn_unused(header: &Header, layout: &Layout, file: &str, report: &mut Report) {
+    let has = |element: &Element, names: &[&str]| element.properties.iter().any(|p| names.contains(&p.name.as_str()));
+    let is_read = |element: &&Element| matches!(element.name.as_str(), "vertex" | "face");
+    let elements = || header.elements.iter().filter(|element| element.count > 0);
+    if let Some(colored) = elements().filter(is_read).find(|element| has(element, &REDS)) {
+        report.warn(|| colored.fault(file, model::VERTEX_COLORS_UNUSED));
+    }
+    let faces = elements().find(|element| element.name == "face" && has(element, &["texcoord"]));
+    if let Some(faces) = faces.filter(|_| !layout.has_texture_coordinates) {
+        let message = "the texture coordinates of faces (`texcoord`) are not supported; those of vertices are";
+        report.warn(|| faces.fault(file, message));
+    }
+    // Scanners leave a `camera` that says nothing about the surface.
+    let unused = elements().filter(|e| !is_read(e) && !e.properties.is_empty() && e.name != "camera");
+    for element in unused {
+        report.warn(|| element.fault(file, &format!("the element `{}` is ignored; only faces are read", element.name)));
+    }
 }
 
 /// Where the numbers of a vertex go.
@@ -74,6 +109,7 @@ struct Reader<'h> {
     room: usize,
     /// Of the current face.
     corners: Vec<u32>,
+    faces: Faces,
 }
 
 impl Reader<'_> {
@@ -129,11 +165,15 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// One polygon, as triangles around its first corner.
+    /// One polygon.
     fn face(&mut self, property: &Property, values: &mut Values<'_>, row: Row<'_>) -> Result<(), ReadError> {
         let count = values.whole(property.count.unwrap_or(property.number), row)?;
-        if count < 3 {
+        if count < 0 {
             return Err(values.error(row, &format!("a face of {count} corners"), "at least 3"));
+        }
+        if count < 3 {
+            self.faces.skip(|| values.fault(row, ""));
+            return (0..count).try_for_each(|_| values.skip(property.number, row));
         }
         let triangles = (count - 2) as usize;
         // All vertices count, even if they come behind the faces.
@@ -152,6 +192,7 @@ impl Reader<'_> {
             };
             self.corners.push(known);
         }
+        let first = self.mesh.triangles.len();
         for pair in self.corners[1..].windows(2) {
             let positions = [self.corners[0], pair[0], pair[1]];
             self.mesh.triangles.push(MeshTriangle {
@@ -161,11 +202,13 @@ impl Reader<'_> {
                 material: None,
             });
         }
+        let fan = first..self.mesh.triangles.len();
+        self.faces.add(&mut self.mesh, fan, || values.fault(row, ""));
         Ok(())
     }
 }
 
-/// Reads over an element. One without properties has no bytes, however many there are of it.
+/// Skips an element. One without properties has no bytes, however many there are of it.
 fn skip(element: &Element, values: &mut Values<'_>) -> Result<(), ReadError> {
     if element.properties.is_empty() {
         return Ok(());

@@ -9,6 +9,7 @@ mod values;
 
 use crate::lines::ReadError;
 use crate::model::Model;
+use crate::polygon::Cut;
 use crate::report::Report;
 use crate::resolver::FileError;
 use header::Header;
@@ -30,8 +31,8 @@ pub(crate) struct PlyFile<'a> {
 /// Reads a model of at most `room` vertices, normals, texture coordinates and triangles together.
 ///
 /// The first error ends the search and goes to `report`; the model is `None` then. Fails if the file cannot be read.
-pub(crate) fn parse(file: PlyFile<'_>, room: usize, report: &mut Report) -> Result<Option<Model>, FileError> {
-    match read(file, room, report) {
+pub(crate) fn parse(file: PlyFile<'_>, room: usize, cut: Cut, report: &mut Report) -> Result<Option<Model>, FileError> {
+    match read(file, room, cut, report) {
         Ok(mesh) => Ok(Some(Model { mesh, ..Model::default() })),
         Err(ReadError::Content(fault)) => {
             report.error(|| *fault);
@@ -41,11 +42,11 @@ pub(crate) fn parse(file: PlyFile<'_>, room: usize, report: &mut Report) -> Resu
     }
 }
 
-fn read(file: PlyFile<'_>, room: usize, report: &mut Report) -> Result<MeshDesc, ReadError> {
+fn read(file: PlyFile<'_>, room: usize, cut: Cut, report: &mut Report) -> Result<MeshDesc, ReadError> {
     let mut reader = BufReader::with_capacity(1 << 16, file.reader);
     let header = Header::read(&mut reader, file.path, file.name, report)?;
     let mut values = Values::new(&header, Box::new(reader), file.path, file.name, file.limit);
-    mesh::read(&header, &mut values, room)
+    mesh::read(&header, &mut values, room, cut, report)
 }
 
 #[cfg(test)]
@@ -58,7 +59,7 @@ mod tests {
         let mut report = Report::default();
         let reader = Box::new(Cursor::new(bytes.to_vec()));
         let file = PlyFile { reader, path: Path::new("m.ply"), name: "m.ply", limit: 1 << 20 };
-        let model = parse(file, room, &mut report).map_err(|error| error.to_string())?;
+        let model = parse(file, room, Cut::Outlines, &mut report).map_err(|error| error.to_string())?;
         report.finish().map_err(|faults| faults.to_string())?;
         Ok(model.expect("without an error there is a model").mesh)
     }
@@ -110,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_needed_is_read_over() {
+    fn what_is_not_needed_is_skipped() {
         let text = "ply\nformat ascii 1.0\nobj_info x\nCreated by hand\nelement empty 4000000000\nelement camera 1\nproperty list int float k\n\
                     element face 1\nproperty uchar flag\nproperty list int short vertex_index\nelement vertex 3\n\
                     property int x\nproperty int y\nproperty int z\nend_header\n2 nan inf\n7 3 0 1 2\n0 0 0 1 0 0\n0 1 0\n";
@@ -126,15 +127,15 @@ mod tests {
             ("solid\n", "1:1: the first line is not `ply`"),
             ("ply\n", "2:1: the header has no end; expected `end_header`"),
             ("ply\nend_header\n", "2:1: the format is missing; expected `format ascii 1.0`"),
-            ("ply\nformat ascii 2.0\n", "2:1: the format is not known; expected `format ascii 1.0`"),
-            ("ply\nformat xml 1.0\n", "2:1: the format is not known"),
+            ("ply\nformat ascii 2.0\n", "2:1: the format is unknown; expected `format ascii 1.0`"),
+            ("ply\nformat xml 1.0\n", "2:1: the format is unknown"),
             (
                 "ply\nelement vertex -1\n",
                 "2:1: `-1` is not a number of elements; expected a line such as `element vertex 8`",
             ),
             ("ply\nelement vertex\n", "2:1: the number of elements is missing"),
             ("ply\nproperty float x\n", "2:1: a property before the first element"),
-            ("ply\nelement a 1\nproperty half x\n", "3:1: `half` is no type; expected one of char,"),
+            ("ply\nelement a 1\nproperty half x\n", "3:1: `half` is not a type; expected one of char,"),
             (
                 "ply\nelement a 1\nproperty list float int x\n",
                 "3:1: a list cannot have `float` items in number; expected",
@@ -183,7 +184,6 @@ mod tests {
             ("4 0 1 2 4", "21:9: face 1 of 1: vertex 4 does not exist; expected an index from 0 to 3"),
             ("4 0 1 2 -1", "21:9: face 1 of 1: vertex -1 does not exist"),
             ("4 0 1.5 2 3", "21:5: face 1 of 1: `1.5` is not a whole number"),
-            ("2 0 1", "21:1: face 1 of 1: a face of 2 corners; expected at least 3"),
             ("-3 0 1", "21:1: face 1 of 1: a face of -3 corners"),
             ("200 0 1", "21:1: face 1 of 1: the meshes have more than"),
             ("4 0 1", "22:1: the file ends in face 1 of 1"),

@@ -5,6 +5,7 @@ use crate::Fault;
 use crate::files::{AssetError, Files};
 use crate::model::{self, Model, ModelFormat};
 use crate::obj::{Libraries, Library};
+use crate::polygon::Cut;
 use crate::resolver::Resolver;
 use crate::{Limits, texture};
 use lightcuts_scene::{ImageId, MaterialDesc, MaterialId, MeshId, TextureDesc};
@@ -65,6 +66,18 @@ impl<'a> Assets<'a> {
         image
     }
 
+    /// The image of a library's map, in the first file of these names that there is.
+    fn library_image<'n>(
+        &mut self,
+        draft: &mut Draft,
+        library: &Library,
+        names: impl Iterator<Item = &'n str>,
+    ) -> Result<ImageId, String> {
+        let beside = Path::new(library.name());
+        let name = self.files.first_found(names, beside);
+        self.image(draft, name, Some(beside))
+    }
+
     fn load_image(&mut self, draft: &mut Draft, name: &str, path: &Path) -> Result<ImageId, AssetError> {
         let bytes = self.files.read("texture", path, self.files.limits.texture_bytes)?;
         let image = texture::decode_rgb(name, &bytes, self.files.limits.texture_side).map_err(|error| {
@@ -107,7 +120,7 @@ impl<'a> Assets<'a> {
         path: &Path,
         place: &Fault,
     ) -> Result<Option<Loaded>, AssetError> {
-        let loaded = Model::load(&mut self.files, path, ModelFormat::Obj, place, &mut draft.report)?;
+        let loaded = Model::load(&mut self.files, path, ModelFormat::Obj, Cut::Fans, place, &mut draft.report)?;
         let Some(mut model) = loaded else { return Ok(None) };
         let mut mesh = std::mem::take(&mut model.mesh);
         wanted.file.clone_into(&mut mesh.name);
@@ -131,7 +144,7 @@ impl<'a> Assets<'a> {
         }
         let materials = loaded.materials.take().unwrap_or_else(|| {
             let (files, report) = (&mut self.files, &mut draft.report);
-            let fallback = "the material of the O line";
+            let fallback = "take the material of the O line";
             self.libraries.of_model(files, report, &loaded.model, &loaded.path, fallback)
         });
         let ids: Vec<Option<MaterialId>> = std::iter::zip(&loaded.model.materials, &materials)
@@ -153,7 +166,7 @@ impl<'a> Assets<'a> {
         Some(mesh)
     }
 
-    /// A copy of a mesh: its triangles are to wear other materials.
+    /// A copy of a mesh: its triangles are to have other materials.
     fn copy_mesh(&mut self, draft: &mut Draft, mesh: MeshId, directive: usize, place: &Fault) -> Option<MeshId> {
         let mesh = &draft.scene.meshes[mesh.0 as usize];
         self.files.elements += model::elements(mesh);
@@ -181,10 +194,10 @@ impl<'a> Assets<'a> {
         desc.refraction = optics.refraction;
         desc.refraction_ratio = optics.refraction_ratio;
         desc.local = optics.local;
-        if let Some((file, mode, span)) = found.and_then(|material| material.texture.as_ref()) {
-            let path = PathBuf::from(library.name());
-            match self.image(draft, file, Some(&path)) {
-                Ok(image) => desc.texture = Some(TextureDesc { image, mode: *mode }),
+        if let Some(span) = found.and_then(|material| material.texture.as_ref()) {
+            let map = library.map(span);
+            match self.library_image(draft, library, map.names()) {
+                Ok(image) => desc.texture = Some(TextureDesc { image, mode: map.mode }),
                 Err(message) => draft.report.warn(|| library.fault(span.clone(), &message)),
             }
         }

@@ -147,7 +147,7 @@ const FILE_LINES: &[(&str, &str, Expectation)] = &[
     ("negative-index", "PATH:negative.obj", Error("vertex -4 does not exist: there are 3 so far", Some(4))),
     ("word-index", "PATH:word.obj", Error("`x` is not an index", Some(4))),
     ("huge-index", "PATH:huge.obj", Error("is not an index", Some(4))),
-    ("two-corners", "PATH:corners.obj", Error("the face has 2 corners; expected at least 3", Some(4))),
+    ("two-corners", "PATH:corners.obj", Warning("1 face of fewer than 3 corners is ignored", 4)),
     ("nan-vertex", "PATH:nan.obj", Error("`nan` is not a number", Some(1))),
     ("short-vertex", "PATH:short.obj", Error("2 numbers instead of 3", Some(1))),
     ("far-vertex", "PATH:far.obj", Error("PATH: positions hold", Some(3))),
@@ -206,6 +206,12 @@ const FILES: &[(&str, &[u8], Expectation)] = &[
     ("gltf-inside.txt", b" {\"asset\": {}}", Error("a JSON file, maybe a glTF scene; expected", None)),
     ("mitsuba-inside", b"<scene version=\"3\">", Error("an XML file", None)),
     ("image-inside.txt", b"\x89PNG\r\n\x1a\n\0\0", Error("an image; expected", None)),
+    ("sky.hdr", b"#?RADIANCE\n\n-Y 1 +X 1\n\x80\x80\x80\x80", Error("this is an image; expected a scene", None)),
+    (
+        "light-inside.txt",
+        b"#?RADIANCE\n\n-Y 1 +X 1\n\x80\x80\x80\x80",
+        Error("this is an image; expected a scene", None),
+    ),
     ("unknown.scene", b"hello world", Error("the file holds no directive", Some(1))),
 ];
 
@@ -218,7 +224,7 @@ const COMPANIONS: &[(&str, &[u8])] = &[
     ("negative.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -4 -2 -1\n"),
     ("word.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 x 3\n"),
     ("huge.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n"),
-    ("corners.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n"),
+    ("corners.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\nf 1 2 3\n"),
     ("nan.obj", b"v 0 nan 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
     ("short.obj", b"v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
     ("far.obj", b"v 0 0 1e20\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),

@@ -10,8 +10,8 @@ const BODIES: &[(&str, &str)] = &[
     ("lihgt = 1", "7:1: unknown key `lihgt` of the camera"),
     ("[cam]", "7:2: unknown key `cam` of a scene; expected one of `format`, `version`"),
     ("[[camera]]", "7:3: duplicate key"),
-    ("[material]", "7:1: `material` is no list of tables; expected `[[material]]`"),
-    ("[[environment]]", "7:1: `environment` is no table; expected `[environment]`"),
+    ("[material]", "7:1: `material` is not a list of tables; expected `[[material]]`"),
+    ("[[environment]]", "7:1: `environment` is not a table; expected `[environment]`"),
     (
         "[environment]\nimage = \"no.exr\"",
         "8:9: the image `no.exr` was not found; searched no.exr; expected a PNG, JPEG, EXR",
@@ -21,7 +21,7 @@ const BODIES: &[(&str, &str)] = &[
     ("[environment]\nrotate = 400", "8:10: `rotate`: degrees is 400; expected a number from -360 to 360"),
     ("[environment]\nradiance = -1", "8:12: `radiance` is [-1, -1, -1]; expected three numbers from 0"),
     // Materials.
-    ("[[material]]\ntype = \"mirror\"", "7:1: `name` is missing; expected a text such as"),
+    ("[[material]]\ntype = \"mirror\"", "7:1: `name` is missing; expected a string such as"),
     ("[[material]]\nname = \"a\"", "7:1: `type` is missing; expected one of `lambert`, `phong`"),
     (
         "[[material]]\nname = \"a\"\ntype = \"lamber\"",
@@ -157,7 +157,7 @@ const BODIES: &[(&str, &str)] = &[
     ),
     (
         "{clay}[[object]]\ntype = \"box\"\nmaterial = \"clay\"\ncenter = [0, 0, 0]\nsize = [1, 1, 1]\nrotate = 5",
-        "15:10: `rotate` is no table; expected a rotation such as",
+        "15:10: `rotate` is not a table; expected a rotation such as",
     ),
     (
         "{clay}[[object]]\ntype = \"box\"\nmaterial = \"clay\"\ncenter = [0, 0, 0]\nsize = [1, 1, 1]\nrotate = [{ axis = [0, 0, 0], degrees = 5 }]",
@@ -192,7 +192,10 @@ const BODIES: &[(&str, &str)] = &[
         "13:10: `center` is",
     ),
     // Lights.
-    ("[[light]]\ntype = \"area\"", "8:8: unknown type `area`; expected one of `point`, `spot`"),
+    (
+        "[[light]]\ntype = \"area\"",
+        "8:8: unknown type `area`: did you mean `rectangle`?; expected one of `point`, `spot`",
+    ),
     ("[[light]]\ntype = \"point\"\nposition = [0, 0, 0]", "7:1: `intensity` or `power` is missing"),
     ("[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = 1\npower = 1", "11:9: `power` beside `intensity`"),
     ("[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\npower = -1", "10:9: `power`: intensity is"),
@@ -242,7 +245,7 @@ const CAMERAS: &[(&str, &str)] = &[
         "[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\nnear = inf",
         "6:8: `near` is too large for a 32-bit number",
     ),
-    ("[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\nfov = '40'", "6:7: `fov` is a text; expected a number"),
+    ("[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\nfov = '40'", "6:7: `fov` is a string; expected a number"),
     ("[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, 1]\nshutter = 1", "6:1: unknown key `shutter` of the camera"),
 ];
 

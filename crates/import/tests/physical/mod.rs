@@ -1,5 +1,7 @@
 //! Scenes of the physical model from end to end.
 
+mod geometry;
+mod libraries;
 mod malformed;
 mod models;
 mod schema;
@@ -275,7 +277,7 @@ fn files_are_told_apart_by_extension() {
     assert!(matches!(imported.scene, AnyScene::Physical(scene) if scene.name == "a"));
     assert!(matches!(any(&thesis).expect("it is sound").scene, AnyScene::Thesis(scene) if scene.name == "a"));
     let error = any(&job).expect_err("a job is no scene").to_string();
-    assert!(error.contains("job.toml:1:1: this is no scene: the key `format` is missing"), "{error}");
+    assert!(error.contains("job.toml:1:1: this is not a scene: the key `format` is missing"), "{error}");
     assert!(any(&odd).expect_err("it is broken").to_string().contains("b.TOML:1:"));
     let error = load(&toml, &ImportOptions::default()).expect_err("it is of the other model").to_string();
     assert!(error.contains("a TOML file, which holds a job or a scene of the physical model"), "{error}");

@@ -2,7 +2,7 @@ use super::ImageId;
 use crate::Location;
 use glam::{DVec3, Vec3};
 
-/// A light that is no surface.
+/// A light that is not a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EmitterDesc {
     /// Position, direction and form.
@@ -11,7 +11,7 @@ pub struct EmitterDesc {
     pub location: Location,
 }
 
-/// The forms of light that are no surfaces. Luminous surfaces are objects whose material emits.
+/// The forms of light that are not surfaces. Emissive surfaces are objects whose material emits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EmitterKind {
     /// A point that shines equally in all directions.
@@ -35,7 +35,7 @@ pub enum EmitterKind {
         /// the intensity falls smoothly with the cosine.
         outer_degrees: f32,
     },
-    /// Parallel light.
+    /// Directional light: parallel rays from infinitely far away.
     Directional {
         /// Direction of travel, any length but zero.
         direction: Vec3,

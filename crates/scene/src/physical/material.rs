@@ -60,7 +60,7 @@ impl From<Vec3> for Tint {
 /// microfacet distribution's width alpha is its square, and 0 is smooth.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Scattering {
-    /// Matt.
+    /// Diffuse.
     Lambert {
         /// Share of the light that is reflected.
         albedo: Tint,
@@ -92,9 +92,10 @@ pub enum Scattering {
         /// Factor on light that passes, per crossing.
         transmittance: Vec3,
     },
-    /// Matt under a clear coat.
+    /// Diffuse under a clear coat.
     Plastic {
-        /// Share of the light that the matt ground reflects.
+        /// Share of the light which entered the coat that leaves it again. A base of reflectance a under a coat that reflects the
+        /// share Fi of diffuse light back inside has a (1 - Fi) / (1 - a Fi); Fi is 0.596 for an index of 1.5.
         albedo: Tint,
         /// Refractive index of the coat, above 1 and below 3.
         ior: f32,
@@ -120,7 +121,7 @@ pub enum Scattering {
 }
 
 impl Default for Scattering {
-    /// Half-grey and matt.
+    /// Half-grey and diffuse.
     fn default() -> Self {
         Self::Lambert { albedo: Vec3::splat(0.5).into() }
     }

@@ -1,6 +1,6 @@
 //! Scenes of the physical model: radiometric units, materials and lights that keep energy.
 //!
-//! Lengths are in scene units. Of a point light the radiant intensity is given (power per solid angle, W/sr), of parallel
+//! Lengths are in scene units. Of a point light the radiant intensity is given (power per solid angle, W/sr), of directional
 //! light the irradiance across it (W per square unit), of surfaces and the environment the radiance (W per square unit and
 //! steradian); each as linear RGB with the primaries of Rec. 709.
 
@@ -27,7 +27,7 @@ pub struct PhysicalScene {
     pub name: String,
     /// The view.
     pub camera: PhysicalCamera,
-    /// Lights that are no surfaces, in file order.
+    /// Lights that are not surfaces, in file order.
     pub lights: Vec<EmitterDesc>,
     /// Light from infinitely far away.
     pub environment: Option<EnvironmentDesc>,

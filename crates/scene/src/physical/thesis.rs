@@ -21,7 +21,7 @@ const PLANE_HEIGHT: f32 = 5.12;
 ///
 /// * A light of colour c (diffuse colour times attenuation) would light a white surface that faces it to c at any distance.
 ///   Here it does at the reference distance d, half the diagonal of the box around all objects: a point has the intensity
-///   pi d^2 c, an area light the radiance pi d^2 n c / A for its area A and the n points that the thesis cuts it into, parallel
+///   pi d^2 c, an area light the radiance pi d^2 n c / A for its area A and the n points that the thesis cuts it into, directional
 ///   light the irradiance pi c. `light_scale` is a factor on all of them.
 /// * E times the diffuse and specular colours make a Phong material, scaled down where both exceed 1; F mixes in a mirror, R a
 ///   smooth dielectric of index 1/K. Ambient light has no counterpart: interreflection takes its place.
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn area_lights_become_luminous_rectangles() {
+    fn area_lights_become_emissive_rectangles() {
         let kind = LightKind::Area {
             center: Vec3::Y,
             normal: Vec3::NEG_Y,

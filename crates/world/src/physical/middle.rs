@@ -28,20 +28,9 @@ pub(super) fn middle(scene: &PhysicalScene) -> DVec3 {
 
 /// Middle and diagonal of an object.
 fn ball(scene: &PhysicalScene, shape: &PhysicalShape) -> Option<(DVec3, f64)> {
-    match *shape {
-        PhysicalShape::Sphere { center, radius } => Some((center, 2.0 * f64::from(radius))),
-        PhysicalShape::Rectangle { center, width, height, .. } => {
-            Some((center, f64::from(width).hypot(f64::from(height))))
-        }
-        PhysicalShape::Mesh { mesh, placement, .. } => {
-            let points = &scene.meshes[mesh.0 as usize].positions;
-            let hold = |(a, b): (DVec3, DVec3), p: DVec3| (a.min(p), b.max(p));
-            let whole = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-            let (a, b) = points.iter().map(|&p| placement.transform_point3(p.as_dvec3())).fold(whole, hold);
-            (a.x <= b.x).then(|| ((a + b) / 2.0, (b - a).length()))
-        }
-    }
-    .filter(|(_, size)| *size > 0.0)
+    let (lower, upper) = shape.bounds(&scene.meshes)?;
+    let size = (upper - lower).length();
+    (size > 0.0).then_some(((lower + upper) / 2.0, size))
 }
 
 /// The coordinate with half of the weights, one over the size each, on either side.
