@@ -8,8 +8,11 @@ const OBJ_HELP: &str = "write a scene with a camera, a light and a line such as 
 
 const TOML_HELP: &str = "render a scene of the physical model as one, or write a scene in the thesis' text format";
 
+const IMAGE: &str = "an image";
+const IMAGE_HELP: &str = "`lightcuts info` says what a picture holds, `lightcuts develop` makes a PNG of its light";
+
 /// Extensions that scenes have elsewhere, and what they mean.
-const KNOWN_EXTENSIONS: [(&str, &str); 14] = [
+const KNOWN_EXTENSIONS: [(&str, &str); 19] = [
     ("obj", "an OBJ model without camera and lights"),
     ("mtl", "an MTL material library"),
     ("ply", "a PLY model"),
@@ -22,20 +25,29 @@ const KNOWN_EXTENSIONS: [(&str, &str); 14] = [
     ("usd", "a USD scene"),
     ("usda", "a USD scene"),
     ("blend", "a Blender file"),
-    ("png", "an image"),
-    ("jpg", "an image"),
+    ("png", IMAGE),
+    ("jpg", IMAGE),
+    ("jpeg", IMAGE),
+    ("exr", IMAGE),
+    ("hdr", IMAGE),
+    ("pic", IMAGE),
+    ("pfm", IMAGE),
 ];
 
 /// First bytes that give a format away.
-const KNOWN_STARTS: [(&[u8], &str); 10] = [
+const KNOWN_STARTS: [(&[u8], &str); 14] = [
     (b"glTF", "a glTF scene"),
     (b"ply\n", "a PLY model"),
     (b"ply\r", "a PLY model"),
     (b"<", "an XML file, maybe a Mitsuba scene"),
     (b"{", "a JSON file, maybe a glTF scene"),
-    (b"\x89PNG", "an image"),
-    (b"\xff\xd8\xff", "an image"),
-    (b"v/1\x01", "an image"),
+    (b"\x89PNG", IMAGE),
+    (b"\xff\xd8\xff", IMAGE),
+    (b"v/1\x01", IMAGE),
+    (b"#?RADIANCE", IMAGE),
+    (b"#?RGBE", IMAGE),
+    (b"PF\n", IMAGE),
+    (b"Pf\n", IMAGE),
     (b"BLENDER", "a Blender file"),
     (b"mtllib ", "an OBJ model without camera and lights"),
 ];
@@ -70,6 +82,7 @@ pub(crate) fn toml(path: &Path) -> ImportError {
 }
 
 fn unknown(path: &Path, found: &'static str) -> ImportError {
-    let help = found.starts_with("an OBJ").then_some(OBJ_HELP);
+    let of_image = (found == IMAGE).then_some(IMAGE_HELP);
+    let help = found.starts_with("an OBJ").then_some(OBJ_HELP).or(of_image);
     ImportError::UnknownFormat { path: path.to_path_buf(), found, help }
 }
