@@ -64,7 +64,7 @@ fn json_has_the_promised_keys() {
     let folder = folder();
     let found = json(&folder, "a.exr near.exr", 0);
     let keys = "pdiff_px, pdiff_pass, flip_ldr, flip_hdr, mse, rmse, mae, relmse, mrse, smape, ssim, psnr, bias, \
-                fireflies, non_finite";
+                relbias, fireflies, non_finite";
     for key in keys.split(", ") {
         let is_kind = if key == "pdiff_pass" { found[key].is_boolean() } else { found[key].is_number() };
         assert!(is_kind, "{key}: {}", found[key]);
