@@ -118,5 +118,6 @@ fn aspect_remark(record: &Record) -> Option<String> {
     let aspect = f32::from_le_bytes(record.value.as_slice().try_into().ok()?);
     let told =
         || format!("its pixels are {aspect} times as wide as high (pixelAspectRatio); they are taken as squares");
-    (!((aspect - 1.0).abs() <= ASPECT_TOLERANCE)).then(told)
+    let is_square = (aspect - 1.0).abs() <= ASPECT_TOLERANCE;
+    (!is_square).then(told)
 }

@@ -152,7 +152,7 @@ fn push_rest(layers: &mut Layers, prefix: &str, group: Group) -> Result<(), Imag
 fn single(suffix: &str, width: usize, height: usize, samples: Samples) -> Result<LayerData, ImageError> {
     Ok(match samples {
         Samples::U32(ids) => LayerData::Id(Plane::from_pixels(width, height, ids)?),
-        Samples::F32(values) if suffix == ID && values.iter().all(is_id) => {
+        Samples::F32(values) if suffix == ID && values.iter().all(|value| is_id(*value)) => {
             let ids = values.iter().map(|value| *value as u32).collect();
             LayerData::Id(Plane::from_pixels(width, height, ids)?)
         }
@@ -162,8 +162,8 @@ fn single(suffix: &str, width: usize, height: usize, samples: Samples) -> Result
 }
 
 /// Whether a float is an id that was stored as one.
-fn is_id(value: &f32) -> bool {
-    (0.0..=MAX_EXACT_ID as f32).contains(value) && value.fract() == 0.0
+fn is_id(value: f32) -> bool {
+    (0.0..=MAX_EXACT_ID as f32).contains(&value) && value.fract() == 0.0
 }
 
 /// Takes three float channels out of a group if it has all of them.

@@ -69,7 +69,7 @@ impl Primaries {
 
 impl fmt::Display for Primaries {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let told = |[x, y]: [f64; 2]| format!("{:.4} {:.4}", x, y);
+        let told = |[x, y]: [f64; 2]| format!("{x:.4} {y:.4}");
         let [red, green, blue, white] = [self.red, self.green, self.blue, self.white].map(told);
         write!(formatter, "red {red}, green {green}, blue {blue}, white {white}")
     }

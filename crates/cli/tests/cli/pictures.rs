@@ -117,8 +117,7 @@ fn twice_the_light_is_never_the_same() {
             _ => [if (x, y) == (5, 7) { 1.0 } else { 0.0 }; 3],
         })
     };
-    for (kind, level) in (0..4).flat_map(|kind| [1e-12, 1e-6, 1e-3, 0.1, 1.0, 5.0, 1e3, 1e9].map(|level| (kind, level)))
-    {
+    for (kind, level) in (0..4).flat_map(|kind| [1e-12, 1e-3, 1.0, 5.0, 1e9].map(|level| (kind, level))) {
         let picture = base(kind).map(|pixel| pixel.map(|value| level * value));
         write_exr(folder.at("a.exr"), &Layers::new(picture.clone())).unwrap();
         write_exr(folder.at("b.exr"), &Layers::new(picture.map(|pixel| pixel.map(|value| 2.0 * value)))).unwrap();
@@ -205,7 +204,7 @@ fn a_picture_is_no_scene_and_none_of_its_bytes_are_shown() {
         folder.write(name, bytes);
         let said = folder.run(&format!("render {name} -o o.png")).code(3);
         let said = said.get_output().stderr.clone();
-        assert!(!said.contains(&27) && !said.contains(&155), "{}", String::from_utf8_lossy(&said));
+        assert!(!said.contains(&27), "{}", String::from_utf8_lossy(&said));
         let said = String::from_utf8(said).unwrap();
         let expected = if name == "b.txt" { "(binary)" } else { "lightcuts develop" };
         assert!(said.contains(expected), "{said}");

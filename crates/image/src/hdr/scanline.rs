@@ -12,7 +12,7 @@ pub(super) fn read_scanline(bytes: &mut &[u8], line: &mut [[u8; 4]]) -> Result<(
     if let [2, 2, high @ 0..RUN, low, ..] = **bytes
         && NEW_LENGTHS.contains(&line.len())
     {
-        let length = usize::from(high) << 8 | usize::from(low);
+        let length = (usize::from(high) << 8) | usize::from(low);
         if length != line.len() {
             return Err(format!("it has {length} pixels, but the picture has {}", line.len()));
         }

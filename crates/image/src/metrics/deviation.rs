@@ -41,11 +41,11 @@ pub fn smape(reference: &Image, test: &Image) -> Result<f64, ImageError> {
     mean(reference, test, |a, b| (b - a).abs() / (a.abs() + b.abs() + DARK))
 }
 
-/// How far the light of a whole picture is off: |mean of b - mean of a| / |mean of a|, a ratio; 1 for twice the light, 0.5 for
-/// half of it, whatever its level. Infinite where the reference is black and the test picture is not.
+/// How far the light of a whole picture is off: |mean of d| / mean of |a|, a ratio; 1 for twice the light, 0.5 for half of it,
+/// whatever its level. Infinite where the reference is black and the test picture is not.
 pub fn relative_bias(reference: &Image, test: &Image) -> Result<f64, ImageError> {
     let difference = mean(reference, test, |a, b| b - a)?.abs();
-    let light = mean(reference, test, |a, _| a)?.abs();
+    let light = mean(reference, test, |a, _| a.abs())?;
     Ok(if difference == 0.0 { 0.0 } else { difference / light })
 }
 

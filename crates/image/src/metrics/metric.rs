@@ -159,7 +159,7 @@ impl Metric {
             }
             Self::Bias => "Signed mean of test - reference, in the unit of the light; with z-tests over regions.",
             Self::RelBias => {
-                "|mean of test - mean of reference| / |mean of reference|, a ratio; 1 for twice the light."
+                "|mean of test - reference| / mean of |reference|, a ratio; 1 for twice the light."
             }
             Self::Fireflies => "Number of isolated pixels far brighter than the reference and than their neighbours.",
         }
