@@ -70,9 +70,10 @@ fn check(args: &CompareArgs, reference: &PictureFile, test: &PictureFile) -> Res
     if same_size && same_place && (reference.channels == test.channels || (same_colours && ignore_alpha)) {
         return Ok(());
     }
+    let are_whole = reference.frame.is_whole() && test.frame.is_whole();
     let told = |path: &Path, file: &PictureFile| {
         let (width, height) = size(file);
-        let size = if same_place { format!("{width} x {height}") } else { file.frame.to_string() };
+        let size = if are_whole { format!("{width} x {height}") } else { file.frame.to_string() };
         format!("{} is {size} with channels {}", path.display(), file.channels)
     };
     let message = format!("{}; {}", told(&args.reference, reference), told(&args.test, test));
