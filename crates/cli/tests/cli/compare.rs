@@ -184,9 +184,9 @@ fn one_picture_in_every_format_is_one_picture() {
     folder.write("16.png", DEEP_PNG);
     write_exr(folder.at("16.exr"), &Layers::new(Image::filled(2, 1, [0.2, 0.4, 0.8]))).unwrap();
     assert_eq!(json(&folder, "16.exr 16.png --metrics mae --transfer linear", 0)["same_light"], true);
-    // 128 x 2^(128 - 136) = 0.5 in every channel.
+    // The middle of a step: 128.5 x 2^(128 - 136) in every channel.
     folder.write("grey.hdr", [&b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"[..], &[128; 8]].concat());
-    write_exr(folder.at("grey.exr"), &Layers::new(Image::filled(2, 1, [0.5; 3]))).unwrap();
+    write_exr(folder.at("grey.exr"), &Layers::new(Image::filled(2, 1, [128.5 / 256.0; 3]))).unwrap();
     assert_eq!(json(&folder, "grey.exr grey.hdr --metrics mae --fail mae>0", 0)["same_light"], true);
 }
 

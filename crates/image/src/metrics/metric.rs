@@ -158,9 +158,7 @@ impl Metric {
                 "10 log10 (1 / mean squared difference of code values in 0..1), in dB; infinite for equal pictures."
             }
             Self::Bias => "Signed mean of test - reference, in the unit of the light; with z-tests over regions.",
-            Self::RelBias => {
-                "|mean of test - reference| / mean of |reference|, a ratio; 1 for twice the light."
-            }
+            Self::RelBias => "|mean of test - reference| / mean of |reference|, a ratio; 1 for twice the light.",
             Self::Fireflies => "Number of isolated pixels far brighter than the reference and than their neighbours.",
         }
     }
