@@ -2,7 +2,7 @@
 
 use crate::args::{Cli, Command};
 use crate::exit::{Exit, Failure};
-use crate::{compare, console, devices, drivers, experiment, heatmap, info, render, report, shell};
+use crate::{compare, console, develop, devices, drivers, experiment, heatmap, info, render, report, shell};
 use std::io::IsTerminal;
 use tracing_subscriber::EnvFilter;
 
@@ -18,6 +18,7 @@ pub(crate) fn run(cli: &Cli) -> Exit {
         Command::Info(args) => info::run(args),
         Command::Devices(args) => devices::run(args),
         Command::Compare(args) => compare::run(args, cli.verbose > 0),
+        Command::Develop(args) => develop::run(args),
         Command::Heatmap(args) => heatmap::run(args),
         Command::Experiment(args) => experiment::run(args, cli.verbose > 0),
         Command::Report(args) => report::run(args),

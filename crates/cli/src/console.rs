@@ -1,7 +1,7 @@
 //! Standard output and error. Nothing here panics when the reader at the other end of a pipe has gone.
 
 use crate::exit::Failure;
-use miette::{MietteHandlerOpts, Report};
+use miette::{MietteDiagnostic, MietteHandlerOpts, Report, Severity};
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 
 /// Decides once how diagnostics look: in colours on a terminal, and elsewhere without line breaks of our own, so that
@@ -38,6 +38,11 @@ pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
 /// Writes a line to standard error, if anybody still listens.
 pub(crate) fn note(line: &str) {
     let _ = writeln!(stderr().lock(), "{line}");
+}
+
+/// Shows a warning of one sentence on standard error.
+pub(crate) fn warn(message: &str) {
+    show(&Report::new(MietteDiagnostic::new(message).with_severity(Severity::Warning)));
 }
 
 /// Shows an error or a warning on standard error.

@@ -3,16 +3,17 @@
 use crate::args::HeatmapArgs;
 use crate::console;
 use crate::exit::{Exit, Failure};
-use crate::job::has_extension;
+use crate::job::{has_extension, require_regular};
 use crate::outputs::check_files;
 use lightcuts::image::{self, ColorMap, HeatMap, Image, LayerData, Layers, Plane, Transfer, heat_map, luminance};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Name of the picture itself among its layers.
 const BEAUTY: &str = "beauty";
 
 /// Runs the command.
 pub(crate) fn run(args: &HeatmapArgs) -> Result<Exit, Failure> {
+    require_picture(args)?;
     let output = args.output.clone().unwrap_or_else(|| default_output(args));
     if !has_extension(&output, "png") {
         let message = format!("{} is no picture that can be written", output.display());
@@ -28,6 +29,18 @@ pub(crate) fn run(args: &HeatmapArgs) -> Result<Exit, Failure> {
         console::print(format!("wrote        {}\n", output.display()).as_bytes())?;
     }
     Ok(Exit::Done)
+}
+
+/// Fails unless there is a picture; a layer that is a file tells why there may be none.
+fn require_picture(args: &HeatmapArgs) -> Result<(), Failure> {
+    let (picture, layer) = (args.picture.display(), &args.layer);
+    require_regular(&args.picture).map_err(|why| {
+        if require_regular(Path::new(layer)).is_err() {
+            return Failure::input(format!("cannot read the picture {picture}: {why}"));
+        }
+        let message = format!("the picture and its layer seem to be swapped: {layer} is a file, {picture} is none");
+        Failure::usage(message, format!("lightcuts heatmap {layer} {picture}"))
+    })
 }
 
 fn default_output(args: &HeatmapArgs) -> PathBuf {

@@ -6,8 +6,8 @@
 mod args;
 mod command;
 mod compare;
-
 mod console;
+mod develop;
 mod devices;
 mod drivers;
 mod exit;

@@ -32,7 +32,7 @@ impl Picture {
         match (self, device) {
             (Self::Thesis(rendering), Some(device)) => rendering.displayed_on(display, device),
             (Self::Thesis(rendering), None) => rendering.displayed(display),
-            (Self::Physical(rendering), _) => display.operator().apply(&rendering.beauty),
+            (Self::Physical(rendering), _) => display.develop(&rendering.beauty),
         }
     }
 

@@ -2,7 +2,6 @@
 
 use std::collections::HashSet;
 use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use exr::block::chunk::{Chunk, CompressedBlock};
@@ -16,18 +15,20 @@ use rayon::prelude::*;
 use crate::ImageError;
 use crate::exr_header::text;
 use crate::exr_layout::{Samples, no_beauty};
+use crate::light::guarded;
 use crate::limits::{Claim, MAX_EXPANSION, MAX_EXPANSION_DWA};
+use crate::{Frame, PictureLimits, Window};
 
-/// Be lenient with what other programs write; whatever could hurt is checked here.
+/// Be lenient with what other programs write; sizes are checked here.
 const PEDANTIC: bool = false;
 /// A tile may be larger than its picture (64 x 64 tiles on an 8 x 8 picture), but not without end.
 const MAX_TILE_PIXELS: usize = 1 << 20;
 /// Bytes of the offset table per block of pixels.
 const OFFSET_BYTES: usize = 8;
-/// A DWA block starts with eleven counters; the first is a version and the last a mode, the others are sizes.
+/// Numbers at the front of a DWA block: a version, sizes, a mode.
 const DWA_COUNTERS: usize = 11;
-/// Room for a DWA block beyond its pixels: it pads them to 8 x 8, so that a row of one pixel's height takes 8 times its
-/// size, in coefficients of twice a half's size at worst.
+/// Most that the sizes of a DWA block may be, over those of its pixels: it pads them to 8 x 8, so that a row of one pixel's
+/// height takes 8 times its size, in coefficients of twice a half's size at worst.
 const DWA_SLACK: usize = 16;
 const DWA_MINIMUM: usize = 1 << 16;
 /// Blocks that are decompressed in parallel before they are copied: bounds the memory beside the result.
@@ -39,6 +40,8 @@ pub(crate) struct Decoded {
     pub(crate) width: usize,
     /// Height of the data window in pixels.
     pub(crate) height: usize,
+    /// Both windows.
+    pub(crate) frame: Frame,
     /// Full name and samples of each channel that was wanted, in the order of the file.
     pub(crate) channels: Vec<(String, Samples)>,
 }
@@ -60,16 +63,10 @@ pub(crate) fn decode(
     path: &Path,
     bytes: &[u8],
     part: usize,
+    limits: &PictureLimits,
     wanted: impl Fn(&str) -> bool,
 ) -> Result<Decoded, ImageError> {
-    guarded(path, || decode_part(path, bytes, part, wanted))
-}
-
-/// Last resort: on damaged compressed data the exr crate may still fail an assertion or an index check, and a file must
-/// never end the program. Nothing that outlives `decode` is changed by it, so nothing can be left half changed.
-fn guarded<T>(path: &Path, decode: impl FnOnce() -> Result<T, ImageError>) -> Result<T, ImageError> {
-    catch_unwind(AssertUnwindSafe(decode))
-        .unwrap_or_else(|_| Err(ImageError::malformed(path, "the EXR decoder failed on damaged data")))
+    guarded(path, || decode_part(path, bytes, part, limits, wanted))
 }
 
 fn reader<'a>(path: &Path, bytes: &'a [u8]) -> Result<Reader<Cursor<&'a [u8]>>, ImageError> {
@@ -77,10 +74,16 @@ fn reader<'a>(path: &Path, bytes: &'a [u8]) -> Result<Reader<Cursor<&'a [u8]>>, 
     Reader::read_from_buffered(Cursor::new(bytes), PEDANTIC).map_err(malformed)
 }
 
-fn decode_part(path: &Path, bytes: &[u8], part: usize, wanted: impl Fn(&str) -> bool) -> Result<Decoded, ImageError> {
+fn decode_part(
+    path: &Path,
+    bytes: &[u8],
+    part: usize,
+    limits: &PictureLimits,
+    wanted: impl Fn(&str) -> bool,
+) -> Result<Decoded, ImageError> {
     let malformed = |error: exr::error::Error| ImageError::malformed(path, error.to_string());
     let reader = reader(path, bytes)?;
-    check_parts(path, reader.headers(), part, bytes.len())?;
+    check_parts(path, reader.headers(), part, bytes.len(), limits)?;
 
     let is_wanted = |block: &BlockIndex| block.layer == part && block.level.0 == 0 && block.level.1 == 0;
     let mut expected = 0;
@@ -102,7 +105,22 @@ fn decode_part(path: &Path, bytes: &[u8], part: usize, wanted: impl Fn(&str) -> 
 
     let (width, height) = (header.layer_size.width(), header.layer_size.height());
     let channels = names.into_iter().zip(samples).filter_map(|(name, samples)| Some((name, samples?)));
-    Ok(Decoded { width, height, channels: channels.collect() })
+    Ok(Decoded { width, height, frame: frame(header), channels: channels.collect() })
+}
+
+/// Both windows of a part.
+fn frame(header: &Header) -> Frame {
+    let window = |position: exr::prelude::Vec2<i32>, size: exr::prelude::Vec2<usize>| Window {
+        x: position.x(),
+        y: position.y(),
+        width: size.width(),
+        height: size.height(),
+    };
+    let display = header.shared_attributes.display_window;
+    Frame {
+        data: window(header.own_attributes.layer_position, header.layer_size),
+        display: window(display.position, display.size),
+    }
 }
 
 fn has_beauty(header: &Header) -> bool {
@@ -113,13 +131,19 @@ fn has_beauty(header: &Header) -> bool {
 }
 
 /// Checks everything that would be allocated for: the picture of part `part`, and the offset tables of all parts.
-fn check_parts(path: &Path, headers: &[Header], part: usize, file_bytes: usize) -> Result<(), ImageError> {
+fn check_parts(
+    path: &Path,
+    headers: &[Header],
+    part: usize,
+    file_bytes: usize,
+    limits: &PictureLimits,
+) -> Result<(), ImageError> {
     let header = &headers[part];
     let (width, height) = (header.layer_size.width(), header.layer_size.height());
     let bytes_per_pixel = 4 * header.channels.list.len(); // in memory, where halves are floats
     let expansion = if is_dwa(header) { MAX_EXPANSION_DWA } else { MAX_EXPANSION };
     // Halves double in memory, so the file may hold half of what is decoded.
-    Claim { width, height, bytes_per_pixel, expansion: 2 * expansion, file_bytes }.check(path)?;
+    Claim { width, height, bytes_per_pixel, expansion: 2 * expansion, file_bytes }.check(path, limits)?;
 
     let blocks = headers.iter().map(|header| header.chunk_count).fold(0, usize::saturating_add);
     if blocks.saturating_mul(OFFSET_BYTES) > file_bytes {
@@ -138,7 +162,7 @@ fn is_dwa(header: &Header) -> bool {
     matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_))
 }
 
-/// Fails where a DWA block's counters exceed what its pixels can need: the decoder allocates what they say.
+/// Fails where a DWA block says that it is larger than its pixels can need.
 fn check_dwa_block(path: &Path, header: &Header, chunk: &Chunk) -> Result<(), ImageError> {
     let malformed = |error: exr::error::Error| ImageError::malformed(path, error.to_string());
     let data = match &chunk.compressed_block {

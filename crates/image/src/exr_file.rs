@@ -13,11 +13,12 @@ use exr::prelude::attribute::ChannelDescription;
 use exr::prelude::{Compression, LineOrder, SampleType, Text, Vec2};
 use rayon::prelude::*;
 
+use crate::exr_color::ColorSpace;
 use crate::exr_decode::{decode, part_with_beauty};
 use crate::exr_header::{SampleKind, encode, read_attributes};
 use crate::exr_layout::{Channel, channels_of, layers_of};
 use crate::limits::check_writable;
-use crate::{ImageError, Layers, write_atomic};
+use crate::{ImageError, Layers, PictureLimits, write_atomic};
 
 /// Scan lines per block of ZIP compression.
 const BLOCK_ROWS: usize = 16;
@@ -25,7 +26,9 @@ const BLOCK_ROWS: usize = 16;
 /// Writes layers to an EXR file, atomically and without loss (ZIP).
 ///
 /// One part; the beauty is `R`, `G`, `B`, so that every viewer shows it, and AOVs have prefixed names (`albedo.R`,
-/// `normal.X`, `depth.Z`, `object_id.ID`), which more programs read than separate parts. Attributes are UTF-8 texts.
+/// `normal.X`, `depth.Z`, `object_id.ID`), which more programs read than separate parts. All are floats, ids too, for some
+/// programs refuse mixed types or take integers for shares of 2^32 - 1; a layer with an id above 2^24, which a float may not
+/// hold, is stored as 32-bit integers instead. Attributes are UTF-8 texts.
 /// The file's bytes depend on the layers alone: no time stamp, blocks in order on any number of threads.
 ///
 /// Fails with [`ImageError::Encode`] on an empty picture or one above [`MAX_PIXELS`](crate::MAX_PIXELS), and as [`write_atomic`].
@@ -38,8 +41,8 @@ pub fn write_exr(path: impl AsRef<Path>, layers: &Layers) -> Result<(), ImageErr
 /// channels of that part as layers.
 ///
 /// Reads scan lines and tiles in every compression but HTJ2K; of mip maps the full resolution. Channels that form no
-/// kind of [`LayerData`](crate::LayerData) keep their full names (`A` for alpha). The picture is the data window; the
-/// display window is ignored.
+/// kind of [`LayerData`](crate::LayerData) keep their full names (`A` for alpha). The picture is the data window, whatever the
+/// display window. Colours of other primaries (the attribute `chromaticities`) become Rec. 709.
 ///
 /// Fails with [`ImageError::Io`], or with [`ImageError::Malformed`] on a damaged file, on one above [`MAX_PIXELS`](crate::MAX_PIXELS) or
 /// [`MAX_DECODED_BYTES`](crate::MAX_DECODED_BYTES), on deep and on subsampled pixels. Allocates nothing that the file's
@@ -47,11 +50,20 @@ pub fn write_exr(path: impl AsRef<Path>, layers: &Layers) -> Result<(), ImageErr
 pub fn read_exr(path: impl AsRef<Path>) -> Result<Layers, ImageError> {
     let path = path.as_ref();
     let bytes = fs::read(path).map_err(|source| ImageError::io("read", path, source))?;
-    let part = part_with_beauty(path, &bytes)?;
-    let decoded = decode(path, &bytes, part, |_| true)?;
+    decode_layers(path, &bytes, &PictureLimits::default())
+}
+
+/// Decodes the layers in the bytes of a file; see [`read_exr`].
+fn decode_layers(path: &Path, bytes: &[u8], limits: &PictureLimits) -> Result<Layers, ImageError> {
+    let part = part_with_beauty(path, bytes)?;
+    let space = ColorSpace::read(path, bytes, part)?;
+    let decoded = decode(path, bytes, part, limits, |_| true)?;
     let attributes =
         read_attributes(&mut &bytes[..], part).map_err(|error| ImageError::malformed(path, error.to_string()))?;
-    let layers = layers_of(path, decoded.width, decoded.height, decoded.channels)?;
+    let mut layers = layers_of(path, decoded.width, decoded.height, decoded.channels)?;
+    if let Some(matrix) = &space.matrix {
+        layers.convert_colors(matrix);
+    }
     Ok(layers.with_attributes(attributes))
 }
 
@@ -145,4 +157,27 @@ fn exr_header(width: usize, height: usize, channels: &[Channel<'_>]) -> Header {
         BlockDescription::ScanLines,
         LineOrder::Increasing,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Image;
+
+    #[test]
+    fn a_file_beyond_the_limits_is_refused_before_it_is_decoded() {
+        let bytes = encoded(Path::new("a.exr"), &Layers::new(Image::filled(20, 10, [0.5; 3]))).unwrap();
+        let read = |limits| decode_layers(Path::new("a.exr"), &bytes, &limits);
+        let any = PictureLimits::default();
+        assert!(read(PictureLimits { side: 20, pixels: 200, bytes: 2400 }).is_ok());
+        let cases = [
+            (PictureLimits { side: 19, ..any }, "at most 19 x 19"),
+            (PictureLimits { pixels: 199, ..any }, "more than the limit of 199"),
+            (PictureLimits { bytes: 2399, ..any }, "there is room for 2399 only"),
+        ];
+        for (limits, expected) in cases {
+            let error = read(limits).unwrap_err().to_string();
+            assert!(error.starts_with("cannot read a.exr: 20 x 10 pixels") && error.contains(expected), "{error}");
+        }
+    }
 }

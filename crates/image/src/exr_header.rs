@@ -47,10 +47,10 @@ pub(crate) enum SampleKind {
 }
 
 /// One attribute: name, type name, value.
-struct Record {
-    name: Vec<u8>,
-    kind: Vec<u8>,
-    value: Vec<u8>,
+pub(crate) struct Record {
+    pub(crate) name: Vec<u8>,
+    pub(crate) kind: Vec<u8>,
+    pub(crate) value: Vec<u8>,
 }
 
 /// The bytes of a file from its start to its offset table: one part, scan lines from the top, ZIP in blocks of 16.
@@ -116,6 +116,13 @@ fn channel_list(channels: &[(String, SampleKind)]) -> Vec<u8> {
 /// Reads no further than that part's header and allocates no more than the bytes that are there. Fails with
 /// `InvalidData` or `UnexpectedEof` on a malformed header.
 pub(crate) fn read_attributes(read: &mut impl BufRead, part: usize) -> io::Result<BTreeMap<String, String>> {
+    let records = part_records(read, part)?.into_iter();
+    let is_text = |record: &Record| record.kind == b"string" && record.name != b"name" && record.name != b"type";
+    Ok(records.filter(is_text).map(|record| (text(record.name), text(record.value))).collect())
+}
+
+/// All attributes of part `part` of a file; see [`read_attributes`].
+pub(crate) fn part_records(read: &mut impl BufRead, part: usize) -> io::Result<Vec<Record>> {
     let mut start = [0; 8];
     read.read_exact(&mut start)?;
     if start[..4] != MAGIC {
@@ -128,9 +135,7 @@ pub(crate) fn read_attributes(read: &mut impl BufRead, part: usize) -> io::Resul
     for _ in 0..part {
         read_records(read)?;
     }
-    let records = read_records(read)?.into_iter();
-    let is_text = |record: &Record| record.kind == b"string" && record.name != b"name" && record.name != b"type";
-    Ok(records.filter(is_text).map(|record| (text(record.name), text(record.value))).collect())
+    read_records(read)
 }
 
 /// The records of one part, up to and with the zero byte that ends them.

@@ -8,6 +8,10 @@ use crate::{Image, ImageError, LayerData, Layers, Plane};
 
 const RGB: [&str; 3] = ["R", "G", "B"];
 const XYZ: [&str; 3] = ["X", "Y", "Z"];
+/// Suffix of ids.
+const ID: &str = "ID";
+/// Up to here every whole number is a float: 2^24.
+const MAX_EXACT_ID: u32 = 1 << 24;
 
 /// A channel to be written: a full name and where its samples are.
 pub(crate) struct Channel<'a> {
@@ -19,6 +23,8 @@ pub(crate) struct Channel<'a> {
 enum Source<'a> {
     Component(&'a Image, usize),
     F32(&'a Plane<f32>),
+    /// Ids that floats hold exactly.
+    SmallIds(&'a Plane<u32>),
     U32(&'a Plane<u32>),
 }
 
@@ -26,7 +32,7 @@ impl Channel<'_> {
     /// The type of the samples.
     pub(crate) fn kind(&self) -> SampleKind {
         match self.source {
-            Source::Component(..) | Source::F32(_) => SampleKind::F32,
+            Source::Component(..) | Source::F32(_) | Source::SmallIds(_) => SampleKind::F32,
             Source::U32(_) => SampleKind::U32,
         }
     }
@@ -36,6 +42,7 @@ impl Channel<'_> {
         match self.source {
             Source::Component(image, c) => bytes.extend(image.row(y).iter().flat_map(|rgb| rgb[c].to_ne_bytes())),
             Source::F32(plane) => bytes.extend(plane.row(y).iter().flat_map(|value| value.to_ne_bytes())),
+            Source::SmallIds(plane) => bytes.extend(plane.row(y).iter().flat_map(|id| (*id as f32).to_ne_bytes())),
             Source::U32(plane) => bytes.extend(plane.row(y).iter().flat_map(|value| value.to_ne_bytes())),
         }
     }
@@ -52,7 +59,10 @@ pub(crate) fn channels_of(layers: &Layers) -> Vec<Channel<'_>> {
             LayerData::Vector(image) => components(&prefix, image, XYZ),
             LayerData::Scalar(plane) => single("Y", Source::F32(plane)),
             LayerData::Depth(plane) => single("Z", Source::F32(plane)),
-            LayerData::Id(plane) => single("ID", Source::U32(plane)),
+            LayerData::Id(plane) if plane.pixels().iter().all(|id| *id <= MAX_EXACT_ID) => {
+                single(ID, Source::SmallIds(plane))
+            }
+            LayerData::Id(plane) => single(ID, Source::U32(plane)),
         });
     }
     channels.sort_by(|a, b| a.name.cmp(&b.name));
@@ -120,7 +130,7 @@ fn push_group(layers: &mut Layers, prefix: &str, mut group: Group) -> Result<(),
         layers.push(prefix, LayerData::Color(interleaved(width, height, &colour)?))?;
     } else if let Some(vector) = take_three(&mut group, XYZ) {
         layers.push(prefix, LayerData::Vector(interleaved(width, height, &vector)?))?;
-    } else if group.len() == 1 && group.keys().all(|suffix| ["Y", "Z", "ID"].contains(&suffix.as_str())) {
+    } else if group.len() == 1 && group.keys().all(|suffix| ["Y", "Z", ID].contains(&suffix.as_str())) {
         for (suffix, samples) in group {
             layers.push(prefix, single(&suffix, width, height, samples)?)?;
         }
@@ -142,9 +152,18 @@ fn push_rest(layers: &mut Layers, prefix: &str, group: Group) -> Result<(), Imag
 fn single(suffix: &str, width: usize, height: usize, samples: Samples) -> Result<LayerData, ImageError> {
     Ok(match samples {
         Samples::U32(ids) => LayerData::Id(Plane::from_pixels(width, height, ids)?),
+        Samples::F32(values) if suffix == ID && values.iter().all(|value| is_id(*value)) => {
+            let ids = values.iter().map(|value| *value as u32).collect();
+            LayerData::Id(Plane::from_pixels(width, height, ids)?)
+        }
         Samples::F32(values) if suffix == "Z" => LayerData::Depth(Plane::from_pixels(width, height, values)?),
         Samples::F32(values) => LayerData::Scalar(Plane::from_pixels(width, height, values)?),
     })
+}
+
+/// Whether a float is an id that was stored as one.
+fn is_id(value: f32) -> bool {
+    (0.0..=MAX_EXACT_ID as f32).contains(&value) && value.fract() == 0.0
 }
 
 /// Takes three float channels out of a group if it has all of them.
@@ -182,6 +201,39 @@ mod tests {
         assert_eq!(layers.aovs().map(|(name, _)| name).collect::<Vec<_>>(), ["A", "Z", "d.ID", "d.R"]);
         assert!(matches!(layers.get("Z"), Some(LayerData::Depth(_))));
         assert!(matches!(layers.get("d.ID"), Some(LayerData::Id(_))));
+    }
+
+    #[test]
+    fn ids_are_floats_as_far_as_floats_are_exact() {
+        let kinds = |greatest: u32| {
+            let mut layers = Layers::new(Image::new(2, 1));
+            let ids = Plane::from_pixels(2, 1, vec![0, greatest]).unwrap();
+            layers.push("object_id", LayerData::Id(ids)).unwrap();
+            let channels = channels_of(&layers);
+            let mut row = Vec::new();
+            let id = channels.iter().find(|channel| channel.name == "object_id.ID").unwrap();
+            id.append_row(0, &mut row);
+            (id.kind(), row[4..].to_vec())
+        };
+        assert_eq!(kinds(3), (SampleKind::F32, 3.0_f32.to_ne_bytes().to_vec()));
+        assert_eq!(kinds(1 << 24), (SampleKind::F32, 16_777_216.0_f32.to_ne_bytes().to_vec()));
+        let beyond = (1 << 24) + 1;
+        assert_eq!(kinds(beyond), (SampleKind::U32, beyond.to_ne_bytes().to_vec()));
+    }
+
+    #[test]
+    fn floats_and_integers_are_read_as_ids_and_other_numbers_are_kept() {
+        let of = |samples| {
+            let beauty = ["B", "G", "R"].map(|name| (name.to_owned(), Samples::F32(vec![0.0; 2])));
+            let channels = beauty.into_iter().chain([("o.ID".to_owned(), samples)]).collect();
+            layers_of(Path::new("a.exr"), 2, 1, channels).unwrap().get("o").cloned()
+        };
+        let ids = |ids| Some(LayerData::Id(Plane::from_pixels(2, 1, ids).unwrap()));
+        assert_eq!(of(Samples::F32(vec![0.0, 16_777_216.0])), ids(vec![0, 1 << 24]));
+        assert_eq!(of(Samples::U32(vec![7, u32::MAX])), ids(vec![7, u32::MAX]));
+        for odd in [0.5, -1.0, 16_777_218.0, f32::NAN, f32::INFINITY] {
+            assert!(matches!(of(Samples::F32(vec![1.0, odd])), Some(LayerData::Scalar(_))), "{odd}");
+        }
     }
 
     #[test]

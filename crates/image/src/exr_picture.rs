@@ -5,10 +5,12 @@ use std::path::Path;
 use exr::meta::header::Header;
 use rayon::prelude::*;
 
+use crate::exr_color::ColorSpace;
 use crate::exr_decode::{Decoded, decode, headers};
 use crate::exr_header::text;
 use crate::exr_layout::Samples;
-use crate::{Channels, Image, ImageError};
+use crate::primaries::convert;
+use crate::{Channels, Image, ImageError, Light, LightOptions};
 
 /// The name of the picture itself, as `lightcuts info` tells it.
 const BEAUTY: &str = "beauty";
@@ -30,20 +32,40 @@ struct Place {
 /// The picture of an EXR file, or its layer of this name.
 ///
 /// The beauty is the first part with `R`, `G` and `B`, or else with `Y` alone. A layer `name` has the channels
-/// `name.R`, `.G`, `.B`, or `.X`, `.Y`, `.Z`, or `.Y`, or `.Z`; or it is the channel `name`, or the part of that name.
-/// Halves and unsigned integers become floats; an `A` beside the colours is told and dropped.
+/// `name.R`, `.G`, `.B`, or `.X`, `.Y`, `.Z`, or `.Y`, or `.Z`, or `.ID`; or it is the channel `name`, or the part of that
+/// name. Halves and unsigned integers become floats; an `A` beside the colours is told and dropped. Colours become Rec. 709
+/// unless data are wanted.
 ///
 /// Fails as [`read_exr`](crate::read_exr), and where there is no such picture.
-pub(crate) fn decode_exr_picture(
-    path: &Path,
-    bytes: &[u8],
-    layer: Option<&str>,
-) -> Result<(Image, Channels), ImageError> {
+pub(crate) fn decode_exr_picture(path: &Path, bytes: &[u8], options: &LightOptions<'_>) -> Result<Light, ImageError> {
     let headers = headers(path, bytes)?;
     let parts: Vec<Part> = headers.iter().map(Part::new).collect();
+    let layer = options.layer;
     let place = find(&parts, layer).ok_or_else(|| absent(path, &parts, layer))?;
-    let decoded = decode(path, bytes, place.part, |name| place.names.iter().any(|wanted| wanted == name))?;
-    Ok((image(&decoded, &place.names)?, place.channels))
+    let space = ColorSpace::read(path, bytes, place.part)?;
+    let is_wanted = |name: &str| place.names.iter().any(|wanted| wanted == name);
+    let decoded = decode(path, bytes, place.part, &options.limits, is_wanted)?;
+    let mut image = image(&decoded, &place.names)?;
+    let is_color = place.names.first().is_some_and(|name| name == "R" || name.ends_with(".R"));
+    let matrix = space.matrix.as_ref().filter(|_| is_color);
+    if let Some(matrix) = matrix
+        && !options.is_data
+    {
+        convert(&mut image, matrix);
+    }
+    Ok(Light {
+        image,
+        channels: place.channels,
+        frame: decoded.frame,
+        has_other_primaries: matrix.is_some(),
+        remarks: space.remarks(is_color, options.is_data),
+    })
+}
+
+/// The part that holds the picture itself, if one does.
+pub(crate) fn main_part(headers: &[Header]) -> Option<usize> {
+    let parts: Vec<Part> = headers.iter().map(Part::new).collect();
+    find(&parts, None).map(|place| place.part)
 }
 
 /// The full names of the one or three channels of a picture in its part, without alpha, and what they are.
@@ -84,11 +106,11 @@ impl Part {
         Some((names, Channels::Grey.with_alpha(has_alpha)))
     }
 
-    /// Whatever can be measured under `prefix`: colours, a vector or a depth.
+    /// Whatever can be measured under `prefix`: colours, a vector, a depth or numbers of objects.
     fn any(&self, prefix: &str) -> Option<Found> {
         let vector = || Some((self.names(prefix, &["X", "Y", "Z"])?, Channels::Rgb));
-        let depth = || Some((self.names(prefix, &["Z"])?, Channels::Grey));
-        self.colours(prefix).or_else(vector).or_else(depth)
+        let single = |suffix| Some((self.names(prefix, &[suffix])?, Channels::Grey));
+        self.colours(prefix).or_else(vector).or_else(|| single("Z")).or_else(|| single("ID"))
     }
 
     /// The layer of this name.
@@ -166,11 +188,13 @@ mod tests {
 
     #[test]
     fn layers_are_found_by_prefix_channel_or_part() {
-        let channels = ["R", "G", "B", "a.b.R", "a.b.G", "a.b.B", "a.b.A", "n.X", "n.Y", "n.Z", "d.Z", "s.Y", "Z"];
+        let channels =
+            ["R", "G", "B", "a.b.R", "a.b.G", "a.b.B", "a.b.A", "n.X", "n.Y", "n.Z", "d.Z", "o.ID", "s.Y", "Z"];
         let of = |layer| found(&channels, Some(layer));
         assert_eq!(of("a.b"), "a.b.R a.b.G a.b.B is R, G, B, A");
         assert_eq!(of("n"), "n.X n.Y n.Z is R, G, B");
         assert_eq!(of("d"), "d.Z is Y");
+        assert_eq!(of("o"), "o.ID is Y");
         assert_eq!(of("s"), "s.Y is Y");
         assert_eq!(of("Z"), "Z is Y");
         assert_eq!(of("n.X"), "n.X is Y");

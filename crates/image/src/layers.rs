@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use crate::exr_header::RESERVED_ATTRIBUTES;
+use crate::primaries::{Matrix, convert};
 use crate::{Image, ImageError, Plane};
 
 /// Longest name that an EXR file stores, in bytes; a channel adds at most three for its suffix.
@@ -21,7 +22,7 @@ pub enum LayerData {
     Scalar(Plane<f32>),
     /// A distance in scene units, channel `Z`.
     Depth(Plane<f32>),
-    /// An id per pixel, channel `ID` of 32-bit integers.
+    /// An id per pixel, channel `ID`; see [`write_exr`](crate::write_exr) for its type in a file.
     Id(Plane<u32>),
 }
 
@@ -120,6 +121,16 @@ impl Layers {
     /// All text attributes by name.
     pub fn attributes(&self) -> &BTreeMap<String, String> {
         &self.attributes
+    }
+
+    /// Applies a matrix to the beauty and to every layer of colours.
+    pub(crate) fn convert_colors(&mut self, matrix: &Matrix) {
+        convert(&mut self.beauty, matrix);
+        for data in self.aovs.values_mut() {
+            if let LayerData::Color(image) = data {
+                convert(image, matrix);
+            }
+        }
     }
 
     /// Replaces all text attributes by those read from a file.

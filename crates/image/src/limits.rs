@@ -10,12 +10,33 @@ pub const MAX_PIXELS: usize = 1 << 28;
 /// The most bytes that the channels of one file may decode to: 16 GiB.
 pub const MAX_DECODED_BYTES: usize = 1 << 34;
 
+/// Bytes of a pixel of a picture in memory: three floats.
+const BYTES_PER_PIXEL: usize = 12;
+
 /// Greatest expansion of deflate, 1032:1 (RFC 1951: 258 bytes from two bits), with room for PXR24, which drops a
 /// quarter of the bytes first. A file that claims more does not hold its pixels.
 pub(crate) const MAX_EXPANSION: usize = 2048;
 
 /// DWA compresses run lengths by deflate, so that its bound is a product; this one admits an all-black file.
 pub(crate) const MAX_EXPANSION_DWA: usize = 1 << 17;
+
+/// The largest picture that a reader accepts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureLimits {
+    /// Greatest width and height, in pixels.
+    pub side: usize,
+    /// Most pixels.
+    pub pixels: usize,
+    /// Most memory of the picture itself, at 12 bytes a pixel.
+    pub bytes: usize,
+}
+
+impl Default for PictureLimits {
+    /// [`MAX_PIXELS`] of any shape.
+    fn default() -> Self {
+        Self { side: usize::MAX, pixels: MAX_PIXELS, bytes: MAX_DECODED_BYTES }
+    }
+}
 
 /// What a header claims about a picture of a file.
 pub(crate) struct Claim {
@@ -32,19 +53,25 @@ pub(crate) struct Claim {
 }
 
 impl Claim {
-    /// Fails with [`ImageError::Malformed`] where the claim exceeds a limit or what the file's length can hold.
-    ///
-    /// A 377-byte file can claim 11 GiB; decoding it without this check aborts the process.
-    pub(crate) fn check(&self, path: &Path) -> Result<(), ImageError> {
+    /// Fails with [`ImageError::Malformed`] where the claim exceeds a limit or what the file's length can hold; to be asked
+    /// before anything is allocated for it.
+    pub(crate) fn check(&self, path: &Path, limits: &PictureLimits) -> Result<(), ImageError> {
         let Self { width, height, .. } = *self;
         let pixels = width.saturating_mul(height);
         let bytes = pixels.saturating_mul(self.bytes_per_pixel);
+        let picture_bytes = pixels.saturating_mul(BYTES_PER_PIXEL);
         let refuse = |reason| Err(ImageError::malformed(path, format!("{width} x {height} pixels: {reason}")));
         if pixels == 0 {
             return refuse("the picture is empty".to_owned());
         }
-        if pixels > MAX_PIXELS {
-            return refuse(format!("more than the limit of {MAX_PIXELS}"));
+        if width.max(height) > limits.side {
+            return refuse(format!("at most {} x {} are possible", limits.side, limits.side));
+        }
+        if pixels > limits.pixels {
+            return refuse(format!("more than the limit of {}", limits.pixels));
+        }
+        if picture_bytes > limits.bytes {
+            return refuse(format!("{picture_bytes} bytes of memory, but there is room for {} only", limits.bytes));
         }
         if bytes > MAX_DECODED_BYTES {
             return refuse(format!("{bytes} bytes, more than the limit of {MAX_DECODED_BYTES}"));
@@ -68,17 +95,33 @@ pub(crate) fn check_writable(path: &Path, width: usize, height: usize) -> Result
 mod tests {
     use super::*;
 
-    fn check(width: usize, height: usize, file_bytes: usize) -> Result<(), ImageError> {
-        Claim { width, height, bytes_per_pixel: 12, expansion: MAX_EXPANSION, file_bytes }.check(Path::new("a.exr"))
+    const SMALL: PictureLimits = PictureLimits { side: 20, pixels: 300, bytes: 2400 };
+
+    fn check(width: usize, height: usize, file_bytes: usize, limits: PictureLimits) -> Result<(), String> {
+        let claim = Claim { width, height, bytes_per_pixel: 12, expansion: 4, file_bytes };
+        claim.check(Path::new("a.exr"), &limits).map_err(|error| error.to_string())
     }
 
     #[test]
-    fn limits_hold() {
-        assert!(check(1920, 1080, 100_000).is_ok());
-        assert!(check(1920, 1080, 377).is_err());
-        assert!(check(0, 5, 377).is_err());
-        assert!(check(MAX_PIXELS + 1, 1, usize::MAX).is_err());
-        assert!(check(usize::MAX, usize::MAX, usize::MAX).is_err());
-        assert!(check(1 << 14, 1 << 14, usize::MAX).is_ok());
+    fn each_limit_holds_and_is_told() {
+        assert_eq!(check(20, 10, 600, SMALL), Ok(()));
+        let refused = |width, height, file_bytes, expected: &str| {
+            let found = check(width, height, file_bytes, SMALL).unwrap_err();
+            assert!(found.starts_with("cannot read a.exr: ") && found.ends_with(expected), "{found}");
+        };
+        refused(0, 5, 600, "the picture is empty");
+        refused(21, 1, 600, "at most 20 x 20 are possible");
+        refused(1, 21, 600, "at most 20 x 20 are possible");
+        refused(20, 16, 6000, "more than the limit of 300");
+        refused(15, 15, 6000, "2700 bytes of memory, but there is room for 2400 only");
+        refused(20, 10, 599, "2400 bytes cannot come from a file of 599 bytes");
+    }
+
+    #[test]
+    fn no_product_of_sides_overflows() {
+        let any = PictureLimits::default();
+        assert!(check(usize::MAX, usize::MAX, usize::MAX, any).is_err());
+        assert!(check(MAX_PIXELS + 1, 1, usize::MAX, any).is_err());
+        assert!(check(1 << 14, 1 << 14, usize::MAX, any).is_ok());
     }
 }

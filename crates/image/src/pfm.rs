@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::limits::Claim;
-use crate::{Channels, Image, ImageError};
+use crate::{Channels, Frame, Image, ImageError, Light, LightOptions, PictureLimits};
 
 /// Longest header: `PF`, two sides and a scale never need more. What is longer is no header.
 const MAX_HEADER_BYTES: usize = 128;
@@ -27,13 +27,16 @@ pub(crate) fn is_pfm(bytes: &[u8]) -> bool {
     matches!(bytes, [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace())
 }
 
-/// The picture of a portable float map (P. Debevec's format, also described by Netpbm): `PF` for colour, `Pf` for grey.
+/// The light of a portable float map (P. Debevec's format): `PF` for colour, `Pf` for grey.
 ///
-/// The magnitude of the scale multiplies the samples. Fails with [`ImageError::Malformed`] unless the pixels fill the
-/// file exactly, and on a picture above [`MAX_PIXELS`](crate::MAX_PIXELS); allocates nothing before that check.
-pub(crate) fn decode_pfm(path: &Path, bytes: &[u8]) -> Result<(Image, Channels), ImageError> {
+/// The samples are multiplied by the magnitude of the scale, as OpenImageIO and Mitsuba do; Netpbm and OpenCV divide, and the
+/// format's own description leaves it open. So a magnitude other than 1 is remarked. The numbers are taken as Rec. 709.
+///
+/// Fails with [`ImageError::Malformed`] unless the pixels fill the file exactly, and beyond the limits; allocates nothing
+/// before that check.
+pub(crate) fn decode_pfm(path: &Path, bytes: &[u8], options: &LightOptions<'_>) -> Result<Light, ImageError> {
     let header = Header::parse(bytes).map_err(|reason| ImageError::malformed(path, reason))?;
-    let samples = header.samples(path, bytes)?;
+    let samples = header.samples(path, bytes, &options.limits)?;
     let from_bytes = if header.scale < 0.0 { f32::from_le_bytes } else { f32::from_be_bytes };
     let factor = header.scale.abs();
     let sample = |index: usize| factor * from_bytes(samples[index]);
@@ -44,7 +47,13 @@ pub(crate) fn decode_pfm(path: &Path, bytes: &[u8]) -> Result<(Image, Channels),
             _ => [sample(index); 3],
         }
     };
-    Ok((Image::from_fn(header.width, header.height, pixel), header.channels))
+    Ok(Light {
+        image: Image::from_fn(header.width, header.height, pixel),
+        channels: header.channels,
+        frame: Frame::whole(header.width, header.height),
+        has_other_primaries: false,
+        remarks: header.remark().into_iter().collect(),
+    })
 }
 
 impl Header {
@@ -69,14 +78,31 @@ impl Header {
         Ok(Self { channels, width, height, scale, length: at })
     }
 
+    /// What is to be said of the scale.
+    fn remark(&self) -> Option<String> {
+        let factor = self.scale.abs();
+        let told = || {
+            format!(
+                "the header's scale is {}: the samples were multiplied by {factor}; some programs (Netpbm, OpenCV) divide by it",
+                self.scale
+            )
+        };
+        (factor != 1.0).then(told)
+    }
+
     /// The samples of the file, all of them and nothing else.
-    fn samples<'a>(&self, path: &Path, bytes: &'a [u8]) -> Result<&'a [[u8; SAMPLE_BYTES]], ImageError> {
+    fn samples<'a>(
+        &self,
+        path: &Path,
+        bytes: &'a [u8],
+        limits: &PictureLimits,
+    ) -> Result<&'a [[u8; SAMPLE_BYTES]], ImageError> {
         let samples_per_pixel = if self.channels == Channels::Rgb { 3 } else { 1 };
         let bytes_per_pixel = samples_per_pixel * SAMPLE_BYTES;
         let pixels = &bytes[self.length..];
         let claim =
             Claim { width: self.width, height: self.height, bytes_per_pixel, expansion: 1, file_bytes: pixels.len() };
-        claim.check(path)?;
+        claim.check(path, limits)?;
         let expected = self.width * self.height * bytes_per_pixel; // no overflow: the claim is checked
         if pixels.len() != expected {
             let reason = format!("{} bytes follow its {expected} bytes of pixels", pixels.len() - expected);
@@ -100,8 +126,10 @@ fn token<'a>(bytes: &'a [u8], at: &mut usize) -> Result<&'a str, String> {
 mod tests {
     use super::*;
 
-    fn decode(header: &str, samples: &[u8]) -> Result<(Image, Channels), ImageError> {
-        decode_pfm(Path::new("a.pfm"), &[header.as_bytes(), samples].concat())
+    fn decode(header: &str, samples: &[u8]) -> Result<Light, ImageError> {
+        let limits = PictureLimits { side: 64, pixels: 1000, ..PictureLimits::default() };
+        let options = LightOptions { limits, ..LightOptions::default() };
+        decode_pfm(Path::new("a.pfm"), &[header.as_bytes(), samples].concat(), &options)
     }
 
     fn complaint(header: &str, samples: &[u8]) -> String {
@@ -114,19 +142,30 @@ mod tests {
         let little: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let big: Vec<u8> = values.iter().flat_map(|value| value.to_be_bytes()).collect();
         for (header, samples) in [("PF\n2 2\n-1.0\n", &little), ("PF 2\r2\t1 ", &big)] {
-            let (image, channels) = decode(header, samples).unwrap();
+            let Light { image, channels, remarks, .. } = decode(header, samples).unwrap();
+            assert_eq!(remarks, [""; 0]);
             assert_eq!(channels, Channels::Rgb);
             assert_eq!(image.row(1), [[0.0, 0.25, 0.5], [0.75, 1.0, 1.25]], "the file's first row is the bottom one");
             assert_eq!(image.row(0), [[1.5, 1.75, 2.0], [2.25, 2.5, 2.75]]);
         }
-        let (image, channels) = decode("Pf\n4 3\n-2\n", &little).unwrap();
-        assert_eq!(channels, Channels::Grey);
-        assert_eq!(image.get(1, 2), [0.5; 3], "the scale multiplies");
+    }
+
+    #[test]
+    fn the_scale_multiplies_and_that_is_said() {
+        for (scale, factor) in [("-2", 2.0), ("0.25", 0.25), ("-1e3", 1000.0)] {
+            let bytes = if scale.starts_with('-') { 0.5_f32.to_le_bytes() } else { 0.5_f32.to_be_bytes() };
+            let Light { image, channels, remarks, .. } = decode(&format!("Pf\n1 1\n{scale}\n"), &bytes).unwrap();
+            assert_eq!((image.get(0, 0), channels), ([0.5 * factor; 3], Channels::Grey));
+            assert!(remarks[0].contains(&format!("multiplied by {factor};")), "{remarks:?}");
+        }
+        for scale in ["-1", "1.0", "-1.000"] {
+            assert_eq!(decode(&format!("Pf\n1 1\n{scale}\n"), &[0; 4]).unwrap().remarks.len(), 0);
+        }
     }
 
     #[test]
     fn samples_that_look_like_white_space_belong_to_the_pixels() {
-        let (image, _) = decode("Pf\n1 1\n-1\n", b"\n\n\n\n").unwrap();
+        let image = decode("Pf\n1 1\n-1\n", b"\n\n\n\n").unwrap().image;
         assert_eq!(image.get(0, 0), [f32::from_le_bytes(*b"\n\n\n\n"); 3]);
     }
 
@@ -142,9 +181,9 @@ mod tests {
             ("PF\n2 2\n-inf\n", "not -inf"),
             ("PF\n2 2\n0\n", "not 0"),
             ("PF\n2 2\nsmall\n", "expected the scale, found \"small\""),
-            ("PF\n4294967295 4294967295\n-1\n", "more than the limit"),
-            ("PF\n18446744073709551615 18446744073709551615\n-1\n", "more than the limit"),
-            ("PF\n16384 16384\n-1\n", "cannot come from a file of 4 bytes"),
+            ("PF\n65 1\n-1\n", "at most 64 x 64"),
+            ("PF\n40 40\n-1\n", "more than the limit of 1000"),
+            ("PF\n16 16\n-1\n", "cannot come from a file of 4 bytes"),
             ("PF\n# a comment\n1 1\n-1\n", "expected the width in pixels, found \"#\""),
             ("PG\n1 1\n-1\n", "expected PF or Pf"),
         ];

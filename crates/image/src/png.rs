@@ -8,7 +8,7 @@ use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
 use image::{DynamicImage, ExtendedColorType, ImageDecoder as _, ImageEncoder as _};
 use serde::{Deserialize, Serialize};
 
-use crate::limits::{Claim, MAX_EXPANSION, check_writable};
+use crate::limits::{Claim, MAX_EXPANSION, PictureLimits, check_writable};
 use crate::{Channels, Image, ImageError, write_atomic};
 
 mod text;
@@ -125,7 +125,7 @@ pub(crate) fn decode_png(path: &Path, bytes: &[u8]) -> Result<Decoded, ImageErro
         expansion: 8 * MAX_EXPANSION,
         file_bytes: bytes.len(),
     };
-    claim.check(path)?;
+    claim.check(path, &PictureLimits::default())?;
     let picture = DynamicImage::from_decoder(decoder).map_err(malformed)?;
     let is_16_bit = color.bytes_per_pixel() / color.channel_count() == 2;
     // Divided here, so that grey and colour of one code value are one number.

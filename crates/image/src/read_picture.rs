@@ -4,16 +4,25 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
-use crate::exr_picture::decode_exr_picture;
-use crate::hdr::{decode_hdr, is_hdr};
-use crate::pfm::{decode_pfm, is_pfm};
 use crate::png::{Decoded, decode_png};
-use crate::{Image, ImageError, Picture, Transfer};
+use crate::{Frame, ImageError, Light, LightOptions, Picture, PictureFormat, Transfer, decode_light};
 
-/// The first bytes of an EXR file.
-const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-/// The first bytes of a PNG file.
-const PNG: [u8; 8] = [0x89, b'P', b'N', b'G', 0x0d, 0x0a, 0x1a, 0x0a];
+/// A picture file that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PictureFile {
+    /// What it holds.
+    pub picture: Picture,
+    /// The channels of the file.
+    pub channels: Channels,
+    /// Told by content.
+    pub format: PictureFormat,
+    /// Where the pixels lie.
+    pub frame: Frame,
+    /// Whether it holds light and not what a display shows: any file but a PNG of 8 bits and fewer.
+    pub holds_light: bool,
+    /// What a user must know of how the numbers were taken, a sentence each.
+    pub remarks: Vec<String>,
+}
 
 /// Which channels a picture file has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,14 +72,13 @@ impl fmt::Display for Channels {
 ///
 /// | format | light | display |
 /// | --- | --- | --- |
-/// | EXR, PFM, HDR | the values | light clamped, after `transfer`, rounded to 8 bits |
+/// | EXR, PFM, HDR | the values, as linear Rec. 709 | light clamped, after `transfer`, rounded to 8 bits |
 /// | PNG of 16 bits | code values / 65535, `transfer` undone | as above |
 /// | PNG of 8 bits and fewer | code values / their greatest, `transfer` undone | the code values |
 ///
-/// Grey becomes three equal channels; alpha is told in the [`Channels`] and dropped, colours are taken as they are stored.
-/// `layer` names a layer of an EXR file: `albedo` is made of `albedo.R`, `.G`, `.B`, or `.X`, `.Y`, `.Z`, or `.Y`, or
-/// `.Z`; also a single channel or a part by name. Of an EXR without a layer: the first part with `R`, `G`, `B`, or else
-/// with `Y`.
+/// Grey becomes three equal channels; alpha is told in the [`Channels`] and dropped. `layer` names a layer of an EXR file:
+/// `albedo` is made of `albedo.R`, `.G`, `.B`, or `.X`, `.Y`, `.Z`, or `.Y`, or `.Z`, or `.ID`; also a single channel or a part
+/// by name. Of an EXR without a layer: the first part with `R`, `G`, `B`, or else with `Y`.
 ///
 /// Fails with [`ImageError::Io`], or with [`ImageError::Malformed`] on a damaged file, on another format, on one above
 /// [`MAX_PIXELS`](crate::MAX_PIXELS), and where there is no such layer.
@@ -78,30 +86,35 @@ pub fn read_picture(
     path: impl AsRef<Path>,
     transfer: Transfer,
     layer: Option<&str>,
-) -> Result<(Picture, Channels), ImageError> {
+) -> Result<PictureFile, ImageError> {
     let path = path.as_ref();
     let bytes = fs::read(path).map_err(|source| ImageError::io("read", path, source))?;
-    let of_light = |(linear, channels): (Image, Channels)| (Picture::from_linear(linear, transfer), channels);
-    if bytes.starts_with(&EXR) {
-        return decode_exr_picture(path, &bytes, layer).map(of_light);
-    }
-    if let Some(layer) = layer {
+    let unknown = || ImageError::malformed(path, "it is no EXR, PNG, PFM or Radiance HDR file");
+    let format = PictureFormat::of(&bytes).ok_or_else(unknown)?;
+    if let (Some(layer), true) = (layer, format != PictureFormat::Exr) {
         return Err(ImageError::malformed(path, format!("it has no layer {layer}: only EXR files have layers")));
     }
-    match () {
-        () if bytes.starts_with(&PNG) => decode_png(path, &bytes).map(|png| of_codes(png, transfer)),
-        () if is_pfm(&bytes) => decode_pfm(path, &bytes).map(of_light),
-        () if is_hdr(&bytes) => decode_hdr(path, &bytes).map(|light| of_light((light, Channels::Rgb))),
-        () => Err(ImageError::malformed(path, "it is no EXR, PNG, PFM or Radiance HDR file")),
+    let options = LightOptions { layer, ..LightOptions::default() };
+    match decode_light(path, &bytes, &options) {
+        Some(light) => light.map(|light| of_light(light, format, transfer)),
+        None => decode_png(path, &bytes).map(|png| of_codes(png, transfer)),
     }
 }
 
+fn of_light(light: Light, format: PictureFormat, transfer: Transfer) -> PictureFile {
+    let Light { image, channels, frame, remarks, .. } = light;
+    let picture = Picture::from_linear(image, transfer);
+    PictureFile { picture, channels, format, frame, holds_light: true, remarks }
+}
+
 /// A PNG of 16 bits says more than a display shows, so that it is taken as light, as every other precise format.
-fn of_codes(png: Decoded, transfer: Transfer) -> (Picture, Channels) {
+fn of_codes(png: Decoded, transfer: Transfer) -> PictureFile {
+    let frame = Frame::whole(png.codes.width(), png.codes.height());
     let picture = if png.is_16_bit {
         Picture::from_linear(png.codes.map(|codes| codes.map(|code| transfer.decode(code))), transfer)
     } else {
         Picture::from_display(png.codes, transfer)
     };
-    (picture, png.channels)
+    let (channels, format) = (png.channels, PictureFormat::Png);
+    PictureFile { picture, channels, format, frame, holds_light: png.is_16_bit, remarks: Vec::new() }
 }

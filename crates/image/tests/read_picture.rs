@@ -9,8 +9,8 @@ use exr::prelude::{self as exr_crate, WritableImage as _};
 use image::codecs::hdr::HdrEncoder;
 use image::{DynamicImage, GrayAlphaImage, GrayImage, ImageBuffer, ImageFormat, Rgb, Rgba, RgbaImage};
 use lightcuts_image::{
-    Channels, Image, ImageError, LayerData, Layers, Picture, Plane, Transfer, max_abs_difference, read_picture,
-    write_exr, write_png,
+    Channels, Image, ImageError, LayerData, Layers, Picture, PictureFile, PictureFormat, Plane, Transfer,
+    max_abs_difference, read_picture, write_exr, write_png,
 };
 
 struct Folder(tempfile::TempDir);
@@ -59,7 +59,8 @@ fn pfm(image: &Image, little: bool) -> Vec<u8> {
 }
 
 fn read(path: &PathBuf) -> (Picture, Channels) {
-    read_picture(path, Transfer::Srgb, None).unwrap()
+    let file = read_picture(path, Transfer::Srgb, None).unwrap();
+    (file.picture, file.channels)
 }
 
 #[test]
@@ -81,13 +82,15 @@ fn a_png_shows_what_an_exr_of_the_same_light_shows() {
         let shown = Picture::from_linear(light.clone(), transfer);
         let png = folder.0.path().join("8.png");
         write_png(&png, &light, transfer).unwrap();
-        let (picture, channels) = read_picture(&png, transfer, None).unwrap();
-        assert_eq!((picture.display(), channels), (shown.display(), Channels::Rgb));
+        let file = read_picture(&png, transfer, None).unwrap();
+        assert_eq!((file.picture.display(), file.channels), (shown.display(), Channels::Rgb));
+        assert!(!file.holds_light && file.format == PictureFormat::Png);
 
         let codes = |value: f32| (65_535.0 * transfer.encode(value.min(1.0))).round() as u16;
         let pixels: Vec<u16> = light.pixels().iter().flatten().map(|value| codes(*value)).collect();
         let precise: ImageBuffer<Rgb<u16>, _> = ImageBuffer::from_raw(37, 23, pixels).unwrap();
-        let (picture, _) = read_picture(folder.write_png(precise), transfer, None).unwrap();
+        let PictureFile { picture, holds_light, .. } = read_picture(folder.write_png(precise), transfer, None).unwrap();
+        assert!(holds_light);
         assert_eq!(picture.display(), shown.display(), "16 bits are shown as 8");
         let clamped = light.map(|pixel| pixel.map(|value| value.min(1.0)));
         let difference = max_abs_difference(picture.linear(), &clamped).unwrap();
@@ -183,16 +186,17 @@ fn layers_are_read_by_name() {
     let path = folder.0.path().join("a.exr");
     write_exr(&path, &layers).unwrap();
     let of = |layer| {
-        let (picture, channels) = read_picture(&path, Transfer::Srgb, Some(layer)).unwrap();
-        (picture.linear().get(1, 1), channels)
+        let file = read_picture(&path, Transfer::Srgb, Some(layer)).unwrap();
+        (file.picture.linear().get(1, 1), file.channels)
     };
     assert_eq!(of("beauty"), ([0.1; 3], Channels::Rgb));
     assert_eq!(of("albedo"), ([0.2, 0.3, 0.4], Channels::Rgb));
     assert_eq!(of("normal"), ([0.0, -1.0, 0.5], Channels::Rgb));
     assert_eq!(of("depth"), ([f32::INFINITY; 3], Channels::Grey));
     assert_eq!(of("lights"), ([70.0; 3], Channels::Grey));
+    assert_eq!(of("id"), ([7.0; 3], Channels::Grey));
     assert_eq!(of("id.ID"), ([7.0; 3], Channels::Grey));
-    for layer in ["id", "none", "", "albedo."] {
+    for layer in ["i", "none", "", "albedo."] {
         let error = read_picture(&path, Transfer::Srgb, Some(layer)).unwrap_err().to_string();
         assert!(error.contains("no layer") && error.contains("albedo.R"), "{error}");
     }

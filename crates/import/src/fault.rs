@@ -53,6 +53,13 @@ impl Fault {
         self
     }
 
+    /// The same without the text at its place, where that is none to be shown.
+    #[must_use]
+    pub(crate) fn without_excerpt(mut self) -> Self {
+        self.excerpt = Excerpt { text: "(binary)".to_owned(), mark: 0.."(binary)".len() };
+        self
+    }
+
     /// The same place with another message.
     #[must_use]
     pub(crate) fn with_message(mut self, message: &str) -> Self {

@@ -14,6 +14,9 @@ const PLY_HELP: &str = "write a scene that names the model: a TOML file with `fo
 
 const TOML_HELP: &str = "render a scene of the physical model as one, or write a scene in the thesis' text format";
 
+const IMAGE: &str = "an image";
+const IMAGE_HELP: &str = "`lightcuts info` says what a picture holds, `lightcuts develop` makes a PNG of its light";
+
 /// Extensions that scenes and pictures have elsewhere, and what they mean.
 const KNOWN_EXTENSIONS: [(&[&str], &str); 16] = [
     (&["obj"], "an OBJ model without camera and lights"),
@@ -31,23 +34,24 @@ const KNOWN_EXTENSIONS: [(&[&str], &str); 16] = [
     (&["3ds", "max"], "a 3ds Max file"),
     (&["wrl", "vrml", "x3d"], "a VRML or X3D scene"),
     (&["abc"], "an Alembic scene"),
-    (&["png", "jpg", "jpeg", "exr", "hdr", "pic", "pfm", "tif", "tiff", "tga", "bmp", "gif", "webp"], "an image"),
+    (&["png", "jpg", "jpeg", "exr", "hdr", "pic", "pfm", "tif", "tiff", "tga", "bmp", "gif", "webp"], IMAGE),
 ];
 
 /// First bytes that give a format away.
-const KNOWN_STARTS: [(&[u8], &str); 15] = [
+const KNOWN_STARTS: [(&[u8], &str); 16] = [
     (b"glTF", "a glTF scene"),
     (b"ply\n", "a PLY model"),
     (b"ply\r", "a PLY model"),
     (b"<", "an XML file, maybe a Mitsuba scene"),
     (b"{", "a JSON file, maybe a glTF scene"),
-    (b"\x89PNG", "an image"),
-    (b"\xff\xd8\xff", "an image"),
-    (b"v/1\x01", "an image"),
-    (b"#?RADIANCE", "an image"),
-    (b"#?RGBE", "an image"),
-    (b"PF\n", "an image"),
-    (b"GIF8", "an image"),
+    (b"\x89PNG", IMAGE),
+    (b"\xff\xd8\xff", IMAGE),
+    (b"v/1\x01", IMAGE),
+    (b"#?RADIANCE", IMAGE),
+    (b"#?RGBE", IMAGE),
+    (b"PF\n", IMAGE),
+    (b"Pf\n", IMAGE),
+    (b"GIF8", IMAGE),
     (b"BLENDER", "a Blender file"),
     (b"PXR-USDC", "a USD scene"),
     (b"mtllib ", "an OBJ model without camera and lights"),
@@ -86,6 +90,7 @@ fn unknown(path: &Path, found: &'static str) -> ImportError {
     let help = match found {
         found if found.starts_with("an OBJ") => Some(OBJ_HELP),
         "a PLY model" => Some(PLY_HELP),
+        IMAGE => Some(IMAGE_HELP),
         _ => None,
     };
     ImportError::UnknownFormat { path: path.to_path_buf(), found, help }

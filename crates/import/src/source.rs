@@ -83,7 +83,10 @@ fn binary_fault(name: &str, bytes: &[u8], offset: usize) -> Fault {
     let before = String::from_utf8_lossy(&bytes[line_start..offset]).into_owned();
     let shown = format!("{before}\u{fffd}");
     let message = format!("byte {offset} of the file is {:#04x}, so this is not text", bytes[offset]);
-    Fault::new(name, line, &shown, before.len()..shown.len(), &message).expected("a text in UTF-8 or Latin-1")
+    let fault = Fault::new(name, line, &shown, before.len()..shown.len(), &message);
+    // What stands before it may be no text either, and is nothing for a terminal.
+    let fault = if before.is_ascii() { fault } else { fault.without_excerpt() };
+    fault.expected("a text in UTF-8 or Latin-1")
 }
 
 #[cfg(test)]
@@ -101,6 +104,9 @@ mod tests {
     fn text_is_told_from_binary() {
         assert_eq!(decode("a", b"\xef\xbb\xbfS\xc3\xbc").as_deref(), Ok("Sü"));
         assert_eq!(decode("a", b"# \xfc").as_deref(), Ok("# ü"));
+        let hidden = decode("a", b"ab\xe2\xf3\0").unwrap_err();
+        assert_eq!(hidden.location().column, 5);
+        assert!(!format!("{hidden:?}").contains("ab"), "{hidden:?}");
         let fault = decode("a", b"S |\nBK\0").unwrap_err();
         assert_eq!(
             fault.to_string(),

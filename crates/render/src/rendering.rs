@@ -54,14 +54,15 @@ impl Rendering {
         layers
     }
 
-    /// The picture as it is shown: tone mapped, before the transfer curve.
+    /// The picture as it is shown: exposed and tone mapped, before the transfer curve.
     pub fn displayed(&self, display: &Display) -> Image {
-        display.operator().apply(&self.beauty)
+        display.develop(&self.beauty)
     }
 
     /// The same by a device; by this one where that faults.
     pub fn displayed_on(&self, display: &Display, device: &dyn Device) -> Image {
-        device.tone_map(&self.beauty, &display.operator()).unwrap_or_else(|_| self.displayed(display))
+        let exposed = display.exposure.apply(&self.beauty);
+        device.tone_map(&exposed, &display.operator()).unwrap_or_else(|_| self.displayed(display))
     }
 }
 

@@ -72,7 +72,7 @@ impl Reference {
         let text = fs::read_to_string(about).with_context(|| format!("cannot read {}", about.display()))?;
         let about: About =
             serde_json::from_str(&text).with_context(|| format!("{} lacks something", about.display()))?;
-        let (picture, _) = read_picture(picture, Transfer::Linear, None)?;
+        let picture = read_picture(picture, Transfer::Linear, None)?.picture;
         Ok(Self { picture: picture.linear().clone(), noise: about.relmse_noise })
     }
 

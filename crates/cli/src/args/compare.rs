@@ -18,7 +18,8 @@ Exit codes:
   130  interrupted (SIGINT)
 
 Conditions without --fail:
-  non_finite>0, pdiff_pass<1, flip_ldr>0.05. The first is always there, beside those of --fail.
+  non_finite>0, pdiff_pass<1, flip_ldr>0.05; where both pictures hold light (EXR, PFM, HDR, PNG of
+  16 bits), flip_hdr>0.05 and relbias>0.1 too. The first is always there, beside those of --fail.
 
 Examples:
   lightcuts compare reference.exr test.exr
@@ -70,8 +71,8 @@ pub(crate) struct JudgingArgs {
 pub(crate) struct InputArgs {
     /// How light is shown, and how code values of a PNG become light.
     ///
-    /// `lightcuts render` shows its pictures, as the thesis does, without a transfer: its PNGs are `linear` unless they
-    /// were rendered with --transfer srgb.
+    /// PNGs that `lightcuts render` wrote are `linear` for the thesis' model of light, as the thesis shows its pictures, and
+    /// `srgb` for the physical one, unless they were rendered with --transfer.
     #[arg(long, value_enum, default_value_t = TransferChoice::Srgb)]
     pub(crate) transfer: TransferChoice,
     /// Layer of EXR files instead of the picture itself, such as `albedo`; see `lightcuts info`.
@@ -80,6 +81,9 @@ pub(crate) struct InputArgs {
     /// Compare the colours where only one of the pictures has an alpha. Alpha itself is never compared.
     #[arg(long)]
     pub(crate) ignore_alpha: bool,
+    /// Compare the pixels of EXR files whose data windows lie elsewhere in their display windows.
+    #[arg(long)]
+    pub(crate) ignore_windows: bool,
 }
 
 /// The parameters of Perceptual Image Diff, as its program has them.

@@ -1,6 +1,7 @@
 //! Flags of bloom and of the picture for eyes.
 
 use clap::Args;
+use lightcuts::image::Exposure;
 use serde::Serialize;
 
 #[derive(Debug, Default, Args, Serialize)]
@@ -22,13 +23,19 @@ pub(crate) struct BloomFlags {
 #[command(next_help_heading = "Display")]
 #[serde(rename_all = "kebab-case")]
 pub(crate) struct DisplayFlags {
+    /// Factor on the light of a PNG, or `auto` [default: 1]
+    ///
+    /// A plain factor, not stops: 2 is twice as bright. With 1 a radiance of 1 is white. `auto`: the geometric mean of the
+    /// picture's luminance becomes middle grey, 0.18, without the darkest and the brightest twentieth of what is lit.
+    #[arg(long, value_name = "FACTOR")]
+    exposure: Option<Exposure>,
     /// Compress brightness for PNG; an EXR always holds linear light [default: none]
     ///
     /// `none`: values as they are, as the thesis shows them; above 1 is white. `global`: one curve for the whole picture.
     /// `local`: a curve per pixel that keeps local contrast (Reinhard et al. 2002).
     #[arg(long, value_parser = ["none", "global", "local"])]
     tone_mapping: Option<String>,
-    /// Transfer curve of PNG values [default: linear]
+    /// Transfer curve of PNG values [default: linear; srgb of the physical model and of develop]
     ///
     /// `linear` stores values as they are, as the thesis shows its pictures. `srgb` is what displays expect of light: brighter
     /// mid-tones.

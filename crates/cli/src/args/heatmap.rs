@@ -20,7 +20,9 @@ pub(crate) struct HeatmapArgs {
     #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
     /// Numbers at both ends of the scale, such as 0..200 [default: 0 to a round number above nearly all values]
-    #[arg(long, value_name = "LOW..HIGH")]
+    ///
+    /// With --log these are logarithms: `--range -6..-2`.
+    #[arg(long, value_name = "LOW..HIGH", allow_hyphen_values = true)]
     pub(crate) range: Option<Range>,
     /// Show the decimal logarithm; values that are not above 0 have the first colour.
     #[arg(long)]
@@ -54,6 +56,28 @@ impl FromStr for Range {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::args::{Cli, Command};
+    use clap::Parser;
+
+    /// The range that a command line gives.
+    fn given(arguments: &[&str]) -> Result<Option<Range>, clap::Error> {
+        let words = ["lightcuts", "heatmap", "a.exr", "depth"].iter().chain(arguments);
+        let Command::Heatmap(args) = Cli::try_parse_from(words)?.command else { panic!("not `heatmap`") };
+        Ok(args.range)
+    }
+
+    #[test]
+    fn a_range_may_begin_with_a_minus() {
+        for (text, low, high) in
+            [("-6..-2", -6.0, -2.0), ("-6..2", -6.0, 2.0), ("-.5..1e3", -0.5, 1e3), ("-1e-3..-1e-4", -1e-3, -1e-4)]
+        {
+            let expected = Some(Range { low, high });
+            assert_eq!(given(&["--range", text]).unwrap(), expected, "{text}");
+            assert_eq!(given(&[&format!("--range={text}"), "-q"]).unwrap(), expected, "{text}");
+        }
+        let error = given(&["--range", "-o"]).unwrap_err().to_string();
+        assert!(error.contains("expected two numbers such as 0..200"), "{error}");
+    }
 
     #[test]
     fn ranges_are_two_numbers_in_order() {

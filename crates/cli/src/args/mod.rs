@@ -1,6 +1,7 @@
 //! The command line. Every parameter is declared once, here: help, completions, man pages and job files follow from it.
 
 mod compare;
+mod develop;
 mod device;
 mod display;
 mod effects;
@@ -16,6 +17,7 @@ mod tests;
 mod value;
 
 pub(crate) use compare::{ChannelOrder, CompareArgs, InputArgs};
+pub(crate) use develop::DevelopArgs;
 pub(crate) use device::{DeviceArgs, DevicesArgs};
 pub(crate) use experiment::ExperimentArgs;
 pub(crate) use heatmap::HeatmapArgs;
@@ -72,6 +74,9 @@ pub(crate) enum Command {
     /// Say how far two pictures differ.
     #[command(after_help = compare::AFTER_HELP)]
     Compare(Box<CompareArgs>),
+    /// Make a PNG of a finished picture: exposure, tone mapping, transfer, bloom.
+    #[command(after_help = develop::AFTER_HELP)]
+    Develop(Box<DevelopArgs>),
     /// Show a layer of a picture (cut sizes, variance, depth, ...) in false colours with a scale.
     #[command(after_help = AFTER_HELP)]
     Heatmap(HeatmapArgs),
@@ -97,7 +102,7 @@ pub(crate) enum Command {
 /// Arguments of `info`.
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
-    /// A scene, or a picture that lightcuts wrote.
+    /// A scene, or a picture: EXR, PNG, Radiance HDR or PFM.
     #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
     pub(crate) path: PathBuf,
     #[command(flatten)]

@@ -109,9 +109,9 @@ pub(crate) struct FilterFlags {
     #[arg(id = "filter-alpha", long = "filter-alpha", value_name = "X")]
     alpha: Option<f32>,
     /// Mitchell's B, blur [default: 0.33333334]
-    #[arg(long = "filter-mitchell-b", value_name = "X")]
+    #[arg(long = "filter-mitchell-b", value_name = "X", allow_hyphen_values = true)]
     mitchell_b: Option<f32>,
     /// Mitchell's C, ringing [default: 0.33333334]
-    #[arg(long = "filter-mitchell-c", value_name = "X")]
+    #[arg(long = "filter-mitchell-c", value_name = "X", allow_hyphen_values = true)]
     mitchell_c: Option<f32>,
 }

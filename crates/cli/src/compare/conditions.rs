@@ -50,13 +50,26 @@ const DEFAULT: [Condition; 2] = [
     Condition { metric: Metric::FlipLdr, relation: Relation::Above, number: 0.05 },
 ];
 
+/// What counts beside them where both pictures hold light: a display shows nothing above 1 and hardly anything near 0. HDR-FLIP
+/// sees at all exposures what FLIP sees at one; the relative bias sees light that few pixels hold, which no mean over pixels does.
+const DEFAULT_OF_LIGHT: [Condition; 2] = [
+    Condition { metric: Metric::FlipHdr, relation: Relation::Above, number: 0.05 },
+    Condition { metric: Metric::RelBias, relation: Relation::Above, number: 0.1 },
+];
+
 /// The conditions of the command line, or the default ones; pixels that are no numbers first.
 pub(super) fn conditions(texts: &[String]) -> Result<Vec<Condition>, Failure> {
     let given = texts.iter().map(|text| Condition::parse(text).map_err(|fault| fault.into_failure(text)));
     let given: Vec<Condition> = given.collect::<Result<_, _>>()?;
-    let chosen = if given.is_empty() { DEFAULT.to_vec() } else { given };
+    let chosen = if given.is_empty() { [DEFAULT, DEFAULT_OF_LIGHT].concat() } else { given };
     let others = chosen.into_iter().filter(|condition| *condition != NON_FINITE);
     Ok(std::iter::once(NON_FINITE).chain(others).collect())
+}
+
+/// Without those that are about light, where none were given and a picture holds only what a display shows.
+pub(super) fn of_display(conditions: Vec<Condition>, texts: &[String]) -> Vec<Condition> {
+    let is_kept = |condition: &Condition| !texts.is_empty() || !DEFAULT_OF_LIGHT.contains(condition);
+    conditions.into_iter().filter(is_kept).collect()
 }
 
 /// Those that hold, in their order.
@@ -226,9 +239,20 @@ mod tests {
             let texts: Vec<String> = texts.iter().map(|text| (*text).to_owned()).collect();
             conditions(&texts).unwrap().iter().map(ToString::to_string).collect::<Vec<_>>()
         };
-        assert_eq!(of(&[]), ["non_finite>0", "pdiff_pass<1", "flip_ldr>0.05"]);
+        assert_eq!(of(&[]), ["non_finite>0", "pdiff_pass<1", "flip_ldr>0.05", "flip_hdr>0.05", "relbias>0.1"]);
         assert_eq!(of(&["mae>1"]), ["non_finite>0", "mae>1"]);
         assert_eq!(of(&["mae>1", "non_finite>0"]), ["non_finite>0", "mae>1"]);
+    }
+
+    #[test]
+    fn what_a_display_shows_is_not_judged_as_light_unless_that_is_asked_for() {
+        let of = |texts: &[&str]| {
+            let texts: Vec<String> = texts.iter().map(|text| (*text).to_owned()).collect();
+            let kept = of_display(conditions(&texts).unwrap(), &texts);
+            kept.iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert_eq!(of(&[]), ["non_finite>0", "pdiff_pass<1", "flip_ldr>0.05"]);
+        assert_eq!(of(&["flip_hdr>0.05"]), ["non_finite>0", "flip_hdr>0.05"]);
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! The two pictures: read, and held against each other before anything is measured.
 
 use crate::args::{CompareArgs, InputArgs};
+use crate::console;
 use crate::exit::Failure;
 use crate::job::require_regular;
-use lightcuts::image::{Channels, Picture, read_picture};
+use lightcuts::image::{Channels, Picture, PictureFile, read_picture};
 use miette::MietteDiagnostic;
 use std::path::Path;
 use std::time::Instant;
@@ -13,12 +14,16 @@ pub(super) struct Inputs {
     pub(super) reference: Picture,
     pub(super) test: Picture,
     pub(super) channels: Channels,
+    /// Whether both hold light, and not only what a display shows.
+    pub(super) hold_light: bool,
+    /// What was told of how the files were read.
+    pub(super) warnings: Vec<String>,
     /// Time that reading took.
     pub(super) seconds: f64,
 }
 
 impl Inputs {
-    /// Reads both pictures, at once.
+    /// Reads both pictures, at once. What is to be said of them goes to standard error.
     pub(super) fn read(args: &CompareArgs) -> Result<Self, Failure> {
         let start = Instant::now();
         for path in [&args.reference, &args.test] {
@@ -29,26 +34,54 @@ impl Inputs {
             read_picture(path, args.input.transfer.into(), args.input.layer.as_deref()).map_err(Failure::input)
         };
         let (reference, test) = rayon::join(|| read(&args.reference), || read(&args.test));
-        let ((reference, channels), (test, test_channels)) = (reference?, test?);
-        check(args, (&reference, channels), (&test, test_channels))?;
-        Ok(Self { reference, test, channels, seconds: start.elapsed().as_secs_f64() })
+        let (reference, test) = (reference?, test?);
+        let warnings = warnings(args, &reference, &test);
+        warnings.iter().for_each(|warning| console::warn(warning));
+        check(args, &reference, &test)?;
+        Ok(Self {
+            hold_light: reference.holds_light && test.holds_light,
+            channels: reference.channels,
+            reference: reference.picture,
+            test: test.picture,
+            warnings,
+            seconds: start.elapsed().as_secs_f64(),
+        })
     }
 }
 
-/// Fails unless sizes and channels match, as far as `--ignore-alpha` does not let them differ.
-fn check(args: &CompareArgs, reference: (&Picture, Channels), test: (&Picture, Channels)) -> Result<(), Failure> {
-    let InputArgs { ignore_alpha, .. } = args.input;
-    let same_size = (reference.0.width(), reference.0.height()) == (test.0.width(), test.0.height());
-    let same_colours = reference.1.without_alpha() == test.1.without_alpha();
-    if same_size && (reference.1 == test.1 || (same_colours && ignore_alpha)) {
+/// What each file's remarks are, with its name.
+fn warnings(args: &CompareArgs, reference: &PictureFile, test: &PictureFile) -> Vec<String> {
+    let of = |path: &Path, file: &PictureFile| {
+        let name = path.display().to_string();
+        file.remarks.iter().map(move |remark| format!("{name}: {remark}")).collect::<Vec<_>>()
+    };
+    let mut warnings = [of(&args.reference, reference), of(&args.test, test)].concat();
+    warnings.dedup();
+    warnings
+}
+
+/// Fails unless sizes, places and channels match, as far as options do not let them differ.
+fn check(args: &CompareArgs, reference: &PictureFile, test: &PictureFile) -> Result<(), Failure> {
+    let InputArgs { ignore_alpha, ignore_windows, .. } = args.input;
+    let size = |file: &PictureFile| (file.picture.width(), file.picture.height());
+    let same_size = size(reference) == size(test);
+    let same_place = ignore_windows || reference.frame.matches(&test.frame);
+    let same_colours = reference.channels.without_alpha() == test.channels.without_alpha();
+    if same_size && same_place && (reference.channels == test.channels || (same_colours && ignore_alpha)) {
         return Ok(());
     }
-    let told = |path: &Path, (picture, channels): (&Picture, Channels)| {
-        format!("{} is {} x {} with channels {channels}", path.display(), picture.width(), picture.height())
+    let are_whole = reference.frame.is_whole() && test.frame.is_whole();
+    let told = |path: &Path, file: &PictureFile| {
+        let (width, height) = size(file);
+        let size = if are_whole { format!("{width} x {height}") } else { file.frame.to_string() };
+        format!("{} is {size} with channels {}", path.display(), file.channels)
     };
     let message = format!("{}; {}", told(&args.reference, reference), told(&args.test, test));
     let help = match () {
         () if !same_size => "only pictures of one size can be compared",
+        () if !same_place => {
+            "they are not of the same place; with --ignore-windows their pixels are compared all the same"
+        }
         () if same_colours => "with --ignore-alpha the colours are compared",
         () => "grey can be compared with grey, and colour with colour",
     };

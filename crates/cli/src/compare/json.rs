@@ -26,6 +26,8 @@ struct Report<'a> {
     /// Whether all light is equal; a NaN equals nothing.
     same_light: bool,
     non_finite_pixels: NonFinitePixels,
+    /// What standard error was told of how the files were read.
+    warnings: &'a [String],
     exposures: Option<Series>,
     bias_test: Option<BiasTest>,
     seconds: Seconds<'a>,
@@ -87,6 +89,7 @@ struct Options<'a> {
     transfer: Transfer,
     layer: Option<&'a str>,
     ignore_alpha: bool,
+    ignore_windows: bool,
     conditions: Vec<String>,
     pdiff: PdiffOptions,
     flip: FlipOptions,
@@ -141,6 +144,7 @@ impl<'a> Report<'a> {
             same_display: inputs.reference.display() == inputs.test.display(),
             same_light: inputs.reference.linear() == inputs.test.linear(),
             non_finite_pixels: NonFinitePixels { reference: found.reference, test: found.test },
+            warnings: &inputs.warnings,
             exposures: comparison.flip_hdr.as_ref().map(|found| Series {
                 start: found.start,
                 stop: found.stop,
@@ -208,6 +212,7 @@ impl<'a> Options<'a> {
             transfer: input.transfer.into(),
             layer: input.layer.as_deref(),
             ignore_alpha: input.ignore_alpha,
+            ignore_windows: input.ignore_windows,
             conditions: outcome.conditions.iter().map(ToString::to_string).collect(),
             pdiff: PdiffOptions::new(&pdiff),
             flip: FlipOptions { pixels_per_degree: flip.pixels_per_degree, exposures },

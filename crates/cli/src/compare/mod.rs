@@ -25,7 +25,8 @@ const PIXELS_WORTH_PROGRESS: usize = 1 << 20;
 
 /// What the command line asks for, checked.
 struct Plan {
-    metrics: Vec<Metric>,
+    /// Those that are asked for by name, or all, without those that conditions and maps need.
+    listed: Vec<Metric>,
     conditions: Vec<Condition>,
     options: MetricOptions,
     maps: Vec<Map>,
@@ -49,8 +50,11 @@ pub(crate) fn run(args: &CompareArgs, logs: bool) -> Result<Exit, Failure> {
 
 fn judge(args: &CompareArgs, logs: bool) -> Result<Exit, Failure> {
     start_threads(&args.output.threads)?;
-    let plan = Plan::new(args)?;
+    let mut plan = Plan::new(args)?;
     let inputs = Inputs::read(args)?;
+    if !inputs.hold_light {
+        plan.conditions = conditions::of_display(plan.conditions, &args.judging.conditions);
+    }
     let comparison = plan.measure(args, &inputs, logs)?;
     let (written, not_written) = maps::write(&plan.maps, &inputs, &comparison);
     let outcome = Outcome {
@@ -77,37 +81,43 @@ impl Plan {
         let conditions = conditions::conditions(&args.judging.conditions)?;
         let maps = maps::maps(args)?;
         let listed = match &args.judging.metrics[..] {
-            [] => &Metric::ALL[..],
-            listed => listed,
+            [] => Metric::ALL.to_vec(),
+            listed => listed.to_vec(),
         };
-        let of_conditions = conditions.iter().map(|condition| condition.metric);
-        let of_maps = maps.iter().filter_map(|map| map.kind.metric());
-        let mut metrics: Vec<Metric> = listed.iter().copied().chain(of_conditions).chain(of_maps).collect();
-        metrics.sort_unstable();
-        metrics.dedup();
-        let plan = Self { metrics, conditions, options: options(args), maps };
+        let plan = Self { listed, conditions, options: options(args), maps };
         plan.rehearse()?;
         Ok(plan)
+    }
+
+    /// All that are to be measured, in the order of reports.
+    fn metrics(&self) -> Vec<Metric> {
+        let of_conditions = self.conditions.iter().map(|condition| condition.metric);
+        let of_maps = self.maps.iter().filter_map(|map| map.kind.metric());
+        let mut metrics: Vec<Metric> = self.listed.iter().copied().chain(of_conditions).chain(of_maps).collect();
+        metrics.sort_unstable();
+        metrics.dedup();
+        metrics
     }
 
     /// Measures one pixel, so that an option out of range is refused before large pictures are read.
     fn rehearse(&self) -> Result<(), Failure> {
         let pixel = Picture::from_display(Image::filled(1, 1, [0.5; 3]), Transfer::Linear);
-        let measured = compare(&pixel, &pixel, &self.metrics, &self.options, &|_| {});
+        let measured = compare(&pixel, &pixel, &self.metrics(), &self.options, &|_| {});
         measured.map(drop).map_err(|error| Failure::usage(error.to_string(), "see `lightcuts compare --help`"))
     }
 
     fn measure(&self, args: &CompareArgs, inputs: &Inputs, logs: bool) -> Result<Comparison, Failure> {
         let is_small = inputs.reference.width() * inputs.reference.height() < PIXELS_WORTH_PROGRESS;
         let progress = Progress::new(args.output.progress, args.output.quiet || is_small, logs);
-        progress.begin_stage("compare", self.metrics.len() as u64);
+        let metrics = self.metrics();
+        progress.begin_stage("compare", metrics.len() as u64);
         let told = |metric: Metric| {
             // Told before each metric: all but the first end another one.
-            if self.metrics.first() != Some(&metric) {
+            if metrics.first() != Some(&metric) {
                 progress.advance();
             }
         };
-        let comparison = compare(&inputs.reference, &inputs.test, &self.metrics, &self.options, &told);
+        let comparison = compare(&inputs.reference, &inputs.test, &metrics, &self.options, &told);
         progress.end();
         progress.finish();
         comparison.map_err(Failure::input)

@@ -114,6 +114,7 @@ fn meaning(metric: Metric) -> &'static str {
         Metric::Ssim => "similarity of structure; 1 equal",
         Metric::Psnr => "signal to noise of what is shown; inf equal",
         Metric::Bias => "mean of test - reference",
+        Metric::RelBias => "its magnitude over the mean of the reference",
         Metric::Fireflies => "lone pixels far too bright",
     }
 }

@@ -9,14 +9,13 @@ mod text;
 use crate::args::InfoArgs;
 use crate::console;
 use crate::exit::{Exit, Failure};
-use crate::job::has_extension;
 use crate::plan::{load, search_path};
 use lightcuts::{AnyScene, Imported, PhysicalWorld, World};
 use serde::Serialize;
 
 /// Runs the command.
 pub(crate) fn run(args: &InfoArgs) -> Result<Exit, Failure> {
-    if has_extension(&args.path, "exr") || has_extension(&args.path, "png") {
+    if picture::is_picture(&args.path) {
         let info = picture::PictureInfo::read(&args.path)?;
         return show(&info, args.json, text::of_picture);
     }

@@ -1,6 +1,6 @@
 //! The same for people.
 
-use super::picture::PictureInfo;
+use super::picture::{PictureInfo, Rectangle, Windows};
 use super::scene::{Camera, Object, Parameter, SceneInfo, Texture};
 
 /// Objects, lights and materials that are listed; more are only counted.
@@ -31,8 +31,16 @@ pub(super) fn of_scene(info: &SceneInfo) -> String {
 pub(super) fn of_picture(info: &PictureInfo) -> String {
     let layers: Vec<_> = info.layers.iter().map(|layer| format!("{} ({})", layer.name, layer.kind)).collect();
     let job = info.job.as_ref().map_or(line("job", "none"), |job| format!("job\n{}\n", indented(job)));
+    let window = |windows: &Windows| {
+        let told = |window: &Rectangle| {
+            format!("{} x {} at column {}, row {}", window.width, window.height, window.x, window.y)
+        };
+        line("data window", &told(&windows.data)) + &line("display", &told(&windows.display))
+    };
     line("picture", &info.file)
+        + &line("format", info.format)
         + &line("size", &format!("{} x {}", info.width, info.height))
+        + &info.window.as_ref().map_or_else(String::new, window)
         + &line("layers", &layers.join(", "))
         + &line("version", info.version.as_deref().unwrap_or("unknown"))
         + &job

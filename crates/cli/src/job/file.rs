@@ -147,7 +147,7 @@ fn read_text(path: &Path) -> Result<String, Failure> {
 }
 
 /// The text `keyword` in the header of a picture.
-pub(crate) fn picture_text(path: &Path, keyword: &str) -> Result<Option<String>, Failure> {
+fn picture_text(path: &Path, keyword: &str) -> Result<Option<String>, Failure> {
     require_regular(path).map_err(|why| Failure::input(format!("cannot read {}: {why}", path.display())))?;
     let text = if has_extension(path, "exr") {
         image::read_exr_attributes(path).map(|mut attributes| attributes.remove(keyword))

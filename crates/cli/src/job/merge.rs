@@ -5,11 +5,12 @@ use crate::args::SettingFlags;
 use crate::exit::Failure;
 use lightcuts::Settings;
 use lightcuts::rendering::{Model, overlay};
+use serde::Serialize;
 use toml::{Table, Value};
 
 /// `scene` (built-in defaults with the scene's recommendations), under the job files in their order, under the flags;
 /// checked, so that rendering cannot fail.
-pub(crate) fn resolve(scene: &Settings, files: &[JobFile], flags: &SettingFlags) -> Result<Settings, Failure> {
+pub(crate) fn resolve(scene: &Settings, files: &[JobFile], flags: &impl Serialize) -> Result<Settings, Failure> {
     let unexpected = |error: &dyn ToString| Failure::usage(error.to_string(), "see `lightcuts render --help`");
     let mut table = Table::try_from(scene).map_err(|error| unexpected(&error))?;
     for file in files {

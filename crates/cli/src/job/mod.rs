@@ -5,9 +5,7 @@ mod file;
 mod merge;
 mod path;
 
-pub(crate) use file::{
-    JOB_ATTRIBUTE, JobFile, VERSION_ATTRIBUTE, has_extension, is_job_carrier, picture_text, require_regular,
-};
+pub(crate) use file::{JOB_ATTRIBUTE, JobFile, VERSION_ATTRIBUTE, has_extension, is_job_carrier, require_regular};
 pub(crate) use merge::{require_fitting, resolve};
 
 use lightcuts::Settings;

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 mod compare;
+mod develop;
 mod devices;
 mod experiment;
 mod inputs;
@@ -13,6 +14,7 @@ mod malformed;
 mod other_commands;
 mod outputs;
 mod physical;
+mod pictures;
 mod rendering;
 mod report;
 mod support;

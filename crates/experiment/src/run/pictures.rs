@@ -73,6 +73,6 @@ pub(super) fn read(path: &Path, display: &Display) -> Result<Picture, ImageError
 
 /// A picture as metrics see it; the same for pictures from memory and from files.
 pub(super) fn developed(linear: Image, display: &Display) -> Result<Picture, ImageError> {
-    let shown = display.operator().apply(&linear);
+    let shown = display.develop(&linear);
     Picture::developed(linear, &shown, display.transfer)
 }

@@ -37,7 +37,7 @@ pub struct Measured {
     pub metric: Metric,
     /// Its value in [`Metric::unit`]; `None` where it has none: SSIM of a picture smaller than its window.
     ///
-    /// PSNR of equal pictures is infinite. MSE to SMAPE and bias are NaN where the light has a non-finite value.
+    /// PSNR of equal pictures is infinite, and so is the relative bias against a black one. MSE to SMAPE and bias are NaN where the light has a non-finite value.
     pub value: Option<f64>,
     /// Wall time of this metric. Metrics that share work (both of Perceptual Image Diff; MSE and RMSE) charge it to the
     /// first of them; the others took no time.
@@ -128,6 +128,7 @@ impl Run<'_> {
             Metric::Ssim => return ssim(shown, test_shown),
             Metric::Psnr => deviation::psnr(shown, test_shown)?,
             Metric::Bias => self.found.bias.insert(Bias::test(light, test_light, *bias_regions)?).mean,
+            Metric::RelBias => deviation::relative_bias(light, test_light)?,
             Metric::Fireflies => count_fireflies(light, test_light)? as f64,
         }))
     }
@@ -228,9 +229,16 @@ mod tests {
         let b = Picture::from_linear(linear, Transfer::Srgb);
         let found = all(&a, &b);
         assert_eq!(found.non_finite, NonFinite { reference: 0, test: 1 });
-        for metric in
-            [Metric::Mse, Metric::Rmse, Metric::Mae, Metric::RelMse, Metric::Mrse, Metric::Smape, Metric::Bias]
-        {
+        for metric in [
+            Metric::Mse,
+            Metric::Rmse,
+            Metric::Mae,
+            Metric::RelMse,
+            Metric::Mrse,
+            Metric::Smape,
+            Metric::Bias,
+            Metric::RelBias,
+        ] {
             assert!(found.value(metric).unwrap().is_nan(), "{metric}");
         }
         for metric in [Metric::PdiffPx, Metric::FlipLdr, Metric::FlipHdr, Metric::Ssim, Metric::Psnr, Metric::Fireflies]

@@ -41,6 +41,14 @@ pub fn smape(reference: &Image, test: &Image) -> Result<f64, ImageError> {
     mean(reference, test, |a, b| (b - a).abs() / (a.abs() + b.abs() + DARK))
 }
 
+/// How far the light of a whole picture is off: |mean of d| / mean of |a|, a ratio; 1 for twice the light, 0.5 for half of it,
+/// whatever its level. Infinite where the reference is black and the test picture is not.
+pub fn relative_bias(reference: &Image, test: &Image) -> Result<f64, ImageError> {
+    let difference = mean(reference, test, |a, b| b - a)?.abs();
+    let light = mean(reference, test, |a, _| a.abs())?;
+    Ok(if difference == 0.0 { 0.0 } else { difference / light })
+}
+
 /// Peak signal to noise ratio of code values in 0..=1: 10 log10 (1 / mse), in dB; infinite for equal pictures.
 pub fn psnr(reference: &Image, test: &Image) -> Result<f64, ImageError> {
     Ok(10.0 * (1.0 / mse(reference, test)?).log10())
@@ -68,6 +76,21 @@ fn row_sum(reference: &[[f32; 3]], test: &[[f32; 3]], error: &impl Fn(f64, f64) 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn relative_bias_is_that_of_the_whole_light_at_any_level() {
+        for level in [1e-30_f32, 1e-6, 1.0, 1e20] {
+            let reference = Image::from_fn(9, 7, |x, y| [level * x as f32, level * y as f32, level * 0.5]);
+            for (factor, expected) in [(1.0, 0.0), (2.0, 1.0), (0.5, 0.5), (4.0, 3.0)] {
+                let test = reference.map(|pixel| pixel.map(|value| factor * value));
+                assert!((relative_bias(&reference, &test).unwrap() - expected).abs() < 1e-6, "{level} {factor}");
+            }
+        }
+        let (black, dim) = (Image::new(2, 2), Image::filled(2, 2, [1e-20; 3]));
+        assert_eq!(relative_bias(&black, &black).unwrap(), 0.0);
+        assert_eq!(relative_bias(&black, &dim).unwrap(), f64::INFINITY);
+        assert!((relative_bias(&dim, &black).unwrap() - 1.0).abs() < 1e-9);
+    }
 
     type Function = fn(&Image, &Image) -> Result<f64, ImageError>;
     const ALL: [Function; 6] = [mse, rmse, mae, relmse, mrse, smape];

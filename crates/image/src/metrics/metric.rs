@@ -34,6 +34,8 @@ pub enum Metric {
     Psnr,
     /// Signed mean difference.
     Bias,
+    /// Its magnitude over the mean of the reference.
+    RelBias,
     /// Isolated pixels far too bright.
     Fireflies,
 }
@@ -68,7 +70,7 @@ pub struct UnknownMetric {
 
 impl Metric {
     /// Every metric, in the order of reports.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::NonFinite,
         Self::PdiffPx,
         Self::PdiffPass,
@@ -83,6 +85,7 @@ impl Metric {
         Self::Ssim,
         Self::Psnr,
         Self::Bias,
+        Self::RelBias,
         Self::Fireflies,
     ];
 
@@ -103,6 +106,7 @@ impl Metric {
             Self::Ssim => "ssim",
             Self::Psnr => "psnr",
             Self::Bias => "bias",
+            Self::RelBias => "relbias",
             Self::Fireflies => "fireflies",
         }
     }
@@ -124,6 +128,7 @@ impl Metric {
             Self::Ssim => "SSIM",
             Self::Psnr => "PSNR",
             Self::Bias => "Bias",
+            Self::RelBias => "Relative bias",
             Self::Fireflies => "Fireflies",
         }
     }
@@ -153,6 +158,7 @@ impl Metric {
                 "10 log10 (1 / mean squared difference of code values in 0..1), in dB; infinite for equal pictures."
             }
             Self::Bias => "Signed mean of test - reference, in the unit of the light; with z-tests over regions.",
+            Self::RelBias => "|mean of test - reference| / mean of |reference|, a ratio; 1 for twice the light.",
             Self::Fireflies => "Number of isolated pixels far brighter than the reference and than their neighbours.",
         }
     }
@@ -164,9 +170,14 @@ impl Metric {
             Self::Psnr => "dB",
             Self::Mse => "light^2",
             Self::Rmse | Self::Mae | Self::Bias => "light",
-            Self::PdiffPass | Self::FlipLdr | Self::FlipHdr | Self::RelMse | Self::Mrse | Self::Smape | Self::Ssim => {
-                ""
-            }
+            Self::PdiffPass
+            | Self::FlipLdr
+            | Self::FlipHdr
+            | Self::RelMse
+            | Self::Mrse
+            | Self::Smape
+            | Self::Ssim
+            | Self::RelBias => "",
         }
     }
 
@@ -217,7 +228,7 @@ mod tests {
     #[test]
     fn keys_are_those_of_the_commands_and_lead_back_to_their_metrics() {
         let keys = "non_finite, pdiff_px, pdiff_pass, flip_ldr, flip_hdr, mse, rmse, mae, relmse, mrse, smape, ssim, \
-                    psnr, bias, fireflies";
+                    psnr, bias, relbias, fireflies";
         assert_eq!(Metric::ALL.map(Metric::key).join(", "), keys);
         for metric in Metric::ALL {
             assert_eq!(metric.to_string().parse(), Ok(metric));

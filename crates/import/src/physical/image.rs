@@ -5,6 +5,7 @@ use super::document::Table;
 use super::value::{FILE, Value};
 use crate::Fault;
 use crate::files::{AssetError, Files};
+pub(super) use crate::texture::ImageUse;
 use crate::texture::{self, Bounds, Decoded, Texels};
 use lightcuts_scene::physical::{ImageId, PixelImage, Pixels};
 use std::collections::HashMap;
@@ -12,15 +13,6 @@ use std::path::{Path, PathBuf};
 
 /// What an image can be, to follow the word "expected".
 const FILES: &str = "a PNG, JPEG, EXR, HDR or PFM file beside the scene or in a search path";
-
-/// What the numbers of an image mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ImageUse {
-    /// Colours; code values are in sRGB.
-    Color,
-    /// Normals, masks and weights, as they are.
-    Data,
-}
 
 /// The images of a scene.
 #[derive(Debug, Default)]
@@ -31,12 +23,18 @@ pub(super) struct Images {
     bytes: u64,
 }
 
-/// The images made of one file: for colours, and for data. They are one where the file holds light.
+/// The images made of one file: for colours, and for data. They are one where the file holds light of Rec. 709.
 #[derive(Debug, Clone, Copy, Default)]
 struct Uses {
     color: Option<ImageId>,
     data: Option<ImageId>,
     has_alpha: bool,
+}
+
+/// An image, and what is to be said of it at its first use.
+struct Found {
+    id: ImageId,
+    remarks: Vec<String>,
 }
 
 impl Uses {
@@ -56,51 +54,82 @@ impl Images {
         list: &mut Vec<PixelImage>,
         (name, beside): (&str, Option<&Path>),
         wanted: ImageUse,
-    ) -> Result<ImageId, String> {
+    ) -> Result<Found, String> {
         let path = files.find("image", name, beside).map_err(|error| error.to_string())?;
         let identity = files.identity(&path);
-        let mut uses = if let Some(known) = self.known.get(&identity) {
-            known.clone()?
-        } else {
-            let decoded = self.decode(files, name, &path).and_then(|decoded| checked(name, decoded));
-            let uses = decoded.map(|decoded| self.push_file(list, name, decoded, wanted));
-            self.known.insert(identity.clone(), uses.clone());
-            uses?
+        let mut uses = match self.known.get(&identity) {
+            Some(known) => known.clone()?,
+            None => Uses::default(),
         };
-        if let Some(id) = uses.of(wanted) {
-            return Ok(*id);
+        if let Some(id) = *uses.of(wanted) {
+            return Ok(Found { id, remarks: Vec::new() });
         }
-        let id = self.push_other_use(files, list, name, &uses, wanted)?;
-        *uses.of(wanted) = Some(id);
-        self.known.insert(identity, Ok(uses));
-        Ok(id)
+        let outcome = self.push_use(files, list, (name, &path), &mut uses, wanted);
+        self.known.insert(identity, outcome.as_ref().map(|_| uses).map_err(Clone::clone));
+        outcome
     }
 
-    fn decode(&self, files: &mut Files<'_>, name: &str, path: &Path) -> Result<Decoded, String> {
+    /// The image of a file for a use that it is not there for yet.
+    fn push_use(
+        &mut self,
+        files: &mut Files<'_>,
+        list: &mut Vec<PixelImage>,
+        (name, path): (&str, &Path),
+        uses: &mut Uses,
+        wanted: ImageUse,
+    ) -> Result<Found, String> {
+        let there = uses.color.or(uses.data).and_then(|id| list.get(id.0 as usize));
+        let codes = there.and_then(|image| match &image.pixels {
+            Pixels::Srgb(texels) | Pixels::Linear(texels) => Some((image.width, image.height, texels.clone())),
+            Pixels::Float(_) => None,
+        });
+        if let Some((width, height, texels)) = codes {
+            let pixels = pixels(texels, uses.has_alpha, wanted);
+            let image = PixelImage { name: name.to_owned(), width, height, pixels };
+            let id = self.push_other_use(files, list, image)?;
+            *uses.of(wanted) = Some(id);
+            return Ok(Found { id, remarks: Vec::new() });
+        }
+        // A file's first use, or light whose colours are of other primaries: it is read once more for the other use.
+        let mut decoded = checked(name, self.decode(files, name, path, wanted)?)?;
+        let remarks = std::mem::take(&mut decoded.remarks);
+        let id = self.push_file(list, name, decoded, uses, wanted);
+        Ok(Found { id, remarks })
+    }
+
+    fn decode(&self, files: &mut Files<'_>, name: &str, path: &Path, wanted: ImageUse) -> Result<Decoded, String> {
         let limits = files.limits;
         let bytes = files.read("image", path, limits.texture_bytes).map_err(|error| error.to_string())?;
         let bounds = Bounds { side: limits.texture_side, bytes: limits.image_bytes.saturating_sub(self.bytes) };
-        texture::decode(&bytes, bounds).map_err(|error| {
+        texture::decode(&bytes, bounds, wanted).map_err(|error| {
             AssetError::Content { what: "image", name: name.to_owned(), reason: error.to_string() }.to_string()
         })
     }
 
-    fn push_file(&mut self, list: &mut Vec<PixelImage>, name: &str, decoded: Decoded, wanted: ImageUse) -> Uses {
-        let Decoded { width, height, texels } = decoded;
-        let mut uses = Uses::default();
+    fn push_file(
+        &mut self,
+        list: &mut Vec<PixelImage>,
+        name: &str,
+        decoded: Decoded,
+        uses: &mut Uses,
+        wanted: ImageUse,
+    ) -> ImageId {
+        let Decoded { width, height, texels, uses_differ, .. } = decoded;
+        let id = ImageId(list.len() as u32);
         let pixels = match texels {
             Texels::Bytes(texels) => {
                 uses.has_alpha = texels.iter().any(|texel| texel[3] != u8::MAX);
                 pixels(texels, uses.has_alpha, wanted)
             }
             Texels::Light(texels) => {
-                uses.color = Some(ImageId(list.len() as u32));
-                uses.data = uses.color;
+                if !uses_differ {
+                    (uses.color, uses.data) = (Some(id), Some(id));
+                }
                 Pixels::Float(texels)
             }
         };
-        *uses.of(wanted) = Some(self.push(list, PixelImage { name: name.to_owned(), width, height, pixels }));
-        uses
+        *uses.of(wanted) = Some(id);
+        self.push(list, PixelImage { name: name.to_owned(), width, height, pixels })
     }
 
     /// An image that is there for another use once more for this one.
@@ -108,20 +137,12 @@ impl Images {
         &mut self,
         files: &Files<'_>,
         list: &mut Vec<PixelImage>,
-        name: &str,
-        uses: &Uses,
-        wanted: ImageUse,
+        image: PixelImage,
     ) -> Result<ImageId, String> {
-        let there = uses.color.or(uses.data).and_then(|id| list.get(id.0 as usize)).cloned();
-        let Some(PixelImage { width, height, pixels: Pixels::Srgb(texels) | Pixels::Linear(texels), .. }) = there
-        else {
-            return Err(format!("the image `{name}` cannot be used for this too"));
-        };
-        let pixels = pixels(texels, uses.has_alpha, wanted);
-        if self.bytes.saturating_add(size(&pixels)) > files.limits.image_bytes {
+        if self.bytes.saturating_add(size(&image.pixels)) > files.limits.image_bytes {
             return Err(format!("the images take more than {} bytes of memory", files.limits.image_bytes));
         }
-        Ok(self.push(list, PixelImage { name: name.to_owned(), width, height, pixels }))
+        Ok(self.push(list, image))
     }
 
     fn push(&mut self, list: &mut Vec<PixelImage>, image: PixelImage) -> ImageId {
@@ -206,10 +227,15 @@ impl Builder<'_> {
         wanted: ImageUse,
         place: impl FnOnce() -> Fault,
     ) -> Result<ImageId, String> {
-        let id = self.images.load(&mut self.files, &mut self.scene.images, (name, beside), wanted)?;
+        let found = self.images.load(&mut self.files, &mut self.scene.images, (name, beside), wanted)?;
         if self.scene.images.len() > self.places.images.len() {
-            self.places.images.push(place());
+            let place = place();
+            for remark in &found.remarks {
+                let message = format!("the image `{name}`: {remark}");
+                self.reader.report.warn(|| place.clone().with_message(&message));
+            }
+            self.places.images.push(place);
         }
-        Ok(id)
+        Ok(found.id)
     }
 }

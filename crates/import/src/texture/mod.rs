@@ -1,9 +1,6 @@
 //! Image files to texels: PNG and JPEG, and for the physical model light in EXR, Radiance HDR and portable float maps.
 
-mod exr;
-mod hdr;
 mod light;
-mod pfm;
 
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits as DecoderLimits};
 use lightcuts_scene::ImageDesc;
@@ -32,6 +29,15 @@ pub(crate) enum TextureError {
     Malformed(String),
 }
 
+/// What the numbers of an image mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ImageUse {
+    /// Colours; code values are in sRGB.
+    Color,
+    /// Normals, masks and weights, as they are.
+    Data,
+}
+
 /// The largest image to decode.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bounds {
@@ -47,6 +53,10 @@ pub(crate) struct Decoded {
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) texels: Texels,
+    /// Whether light is another for colours than for data, its primaries being other ones.
+    pub(crate) uses_differ: bool,
+    /// What a user must know of how light was taken, a sentence each.
+    pub(crate) remarks: Vec<String>,
 }
 
 /// Texels, top row first.
@@ -54,7 +64,7 @@ pub(crate) struct Decoded {
 pub(crate) enum Texels {
     /// Code values; alpha is 255 where the file has none.
     Bytes(Vec<[u8; 4]>),
-    /// Linear light as the file has it.
+    /// Linear light, of Rec. 709 where colours are wanted; data as the file has them.
     Light(Vec<[f32; 3]>),
 }
 
@@ -81,15 +91,15 @@ pub(crate) fn decode_rgb(name: &str, bytes: &[u8], side: u32) -> Result<ImageDes
 }
 
 /// Decodes an image of any of the formats, told apart by content. 16-bit values of PNG files are rounded to 8.
-pub(crate) fn decode(bytes: &[u8], bounds: Bounds) -> Result<Decoded, TextureError> {
+pub(crate) fn decode(bytes: &[u8], bounds: Bounds, wanted: ImageUse) -> Result<Decoded, TextureError> {
     let Some(format) = format_of(bytes)? else {
-        return light::decode(bytes, bounds).unwrap_or(Err(TextureError::UnknownFormat));
+        return light::decode(bytes, bounds, wanted).unwrap_or(Err(TextureError::UnknownFormat));
     };
     let image = decode_bytes(bytes, format, bounds)?;
     let image = image.into_rgba8();
     let (width, height) = image.dimensions();
     let texels = image.into_raw().as_chunks().0.to_vec();
-    Ok(Decoded { width, height, texels: Texels::Bytes(texels) })
+    Ok(Decoded { width, height, texels: Texels::Bytes(texels), uses_differ: false, remarks: Vec::new() })
 }
 
 /// PNG or JPEG; `None` for anything else.
@@ -146,7 +156,7 @@ mod tests {
     #[test]
     fn alpha_is_kept_for_the_physical_model() {
         let bounds = Bounds { side: 16, bytes: 8 };
-        let decoded = |image: DynamicImage| decode(&encoded(&image, ImageFormat::Png), bounds);
+        let decoded = |image: DynamicImage| decode(&encoded(&image, ImageFormat::Png), bounds, ImageUse::Color);
         let grey = decoded(GrayAlphaImage::from_pixel(2, 1, LumaA([77, 3])).into()).expect("a sound image");
         assert_eq!((grey.width, grey.height), (2, 1));
         assert_eq!(grey.texels, Texels::Bytes(vec![[77, 77, 77, 3]; 2]));
@@ -155,7 +165,7 @@ mod tests {
         let error = decoded(DynamicImage::new_rgb8(3, 1)).expect_err("12 is more than 8").to_string();
         assert_eq!(error, "takes 12 bytes of memory, but there is room for 8 only");
         assert_eq!(
-            decode(b"x", bounds).expect_err("no image").to_string(),
+            decode(b"x", bounds, ImageUse::Data).expect_err("no image").to_string(),
             "is no PNG, JPEG, EXR, Radiance HDR or PFM image"
         );
     }

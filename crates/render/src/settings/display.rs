@@ -1,12 +1,15 @@
 //! How a picture is shown.
 
-use lightcuts_image::{GlobalToneMapping, LocalToneMapping, ToneMapping, Transfer};
+use lightcuts_image::{Exposure, GlobalToneMapping, Image, LocalToneMapping, ToneMapping, Transfer};
 use serde::{Deserialize, Serialize};
 
 /// From linear light to displayed values; for PNG only.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Display {
+    /// Factor on light before anything else. The default is not written: files of jobs stay as they were before it came.
+    #[serde(skip_serializing_if = "Exposure::is_neutral")]
+    pub exposure: Exposure,
     /// Tone mapping operator.
     pub tone_mapping: ToneMappingKind,
     /// Parameters of the global operator.
@@ -31,6 +34,11 @@ pub enum ToneMappingKind {
 }
 
 impl Display {
+    /// Linear light as it is shown, before the transfer curve: exposed, then tone mapped.
+    pub fn develop(&self, light: &Image) -> Image {
+        self.operator().apply(&self.exposure.apply(light))
+    }
+
     /// The chosen operator with its parameters.
     pub fn operator(&self) -> ToneMapping {
         match self.tone_mapping {

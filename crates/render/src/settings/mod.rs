@@ -170,6 +170,7 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lightcuts_image::Exposure;
     use lightcuts_scene::{PerDevice, RunDefaults, VplDefaults};
 
     #[test]
@@ -196,6 +197,8 @@ mod tests {
         settings.caustics.radius = 4.0;
         settings.display.local.key = -1.0;
         assert_eq!(settings.validate().unwrap_err().name, "display.local.key");
+        settings.display.exposure = Exposure::Factor(0.0);
+        assert_eq!(settings.validate().unwrap_err().name, "display.exposure");
         settings.image.width = 0;
         assert_eq!(settings.validate().unwrap_err().name, "image.width");
     }

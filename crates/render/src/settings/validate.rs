@@ -1,8 +1,11 @@
 //! The range of every parameter, checked once, so that rendering cannot fail.
 
 use super::{ImageSize, Model, Settings, Strategy, ToneMappingKind};
-use lightcuts_image::{ImageError, MAX_PIXELS};
+use lightcuts_image::{Exposure, ImageError, MAX_PIXELS};
 use std::borrow::Cow;
+
+/// Most that light can be multiplied by before it is shown.
+const MAX_EXPOSURE: f32 = 1e12;
 
 /// A parameter out of its range.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -89,6 +92,10 @@ impl Settings {
         number("caustics.min-diffuse", caustics.min_diffuse, 0.0, 1e6)?;
         number("bloom.radius", self.bloom.radius, 0.0, 1024.0)?;
         number("bloom.weight", self.bloom.weight, 0.0, 1.0)?;
+        if let Exposure::Factor(factor) = self.display.exposure {
+            let is_sound = factor > 0.0 && factor <= MAX_EXPOSURE;
+            ensure("display.exposure", factor, is_sound, "a factor above 0, at most 1e12, or `auto`")?;
+        }
         self.display.operator().validate().map_err(|error| self.display_error(error))
     }
 
