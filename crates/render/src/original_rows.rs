@@ -1,5 +1,5 @@
-//! The original's first pass needs its rows one after the other: where a row's draws begin depends on the hits before it. Twin of the
-//! GPU's `rows`.
+//! The original's first pass needs its rows one after the other: where a row's draws begin depends on the hits before
+//! it. Twin of the GPU's `rows`.
 
 use crate::cpu::{Tracer, Walls};
 use crate::device::View;

@@ -24,8 +24,8 @@ fn order(i: u32, row: u32) -> (u32, u32, u32) {
 }
 
 impl Placement {
-    /// `samples` camera rays are to place as many VPLs, on average, as the thesis' picture of one per pixel: VPLs are not
-    /// weighted, so their number decides how bright the second pass is.
+    /// `samples` camera rays are to place as many VPLs, on average, as the thesis' picture of one per pixel: VPLs are
+    /// not weighted, so their number decides how bright the second pass is.
     pub fn new(settings: &VplPlacement, samples: u64, stream: u32) -> Self {
         let thesis_samples = u64::from(THESIS_SIZE) * u64::from(THESIS_SIZE);
         Self {
@@ -106,8 +106,8 @@ struct Sample {
 }
 
 impl Worker<'_> {
-    /// Renders a few rows of pixels: camera rays look together with their neighbours, and each goes on alone, in the order of the
-    /// pixels.
+    /// Renders a few rows of pixels: camera rays are traced together with their neighbours, and each continues alone,
+    /// in the order of the pixels.
     fn render_rows(&mut self, pixels: &[(u32, u32)]) {
         self.samples.clear();
         self.rays.clear();
@@ -121,12 +121,12 @@ impl Worker<'_> {
             let (i, j) = pixels[samples[k].place];
             order(i, j - bottom)
         });
-        self.shader.look(&self.rays, &looking);
+        self.shader.trace_primary(&self.rays, &looking);
         let seen = self.result.seen.len();
         self.result.seen.resize(seen + pixels.len(), Seen::default());
         for (k, sample) in samples.iter().enumerate() {
             let (i, j) = pixels[sample.place];
-            self.shader.begin(k, sample.number);
+            self.shader.make_current(k, sample.number);
             let color = self.tree.trace(&mut self.shader, self.rays[k]);
             self.result.film.add(i, j, sample.shift, color);
             self.report(seen + sample.place);

@@ -5,8 +5,9 @@ use glam::{DVec3, Vec3};
 use lightcuts_kernel::intersect::Sphere;
 use lightcuts_world::bvh::Geometry;
 
-/// How far outside of a sphere a hit may be that single precision finds: its squared distance from the centre exceeds that of the
-/// radius by this times the square of the greatest distance that a ray begins at, with as much to spare ([`Room::sphere_box`]).
+/// How far outside of a sphere a hit may be that single precision finds: its squared distance from the centre exceeds
+/// that of the radius by this times the square of the greatest distance that a ray begins at, with as much to spare
+/// ([`Room::sphere_box`]).
 const SPHERE_ROUNDING: f64 = 256.0 * f32::EPSILON as f64;
 
 /// A box.
@@ -39,27 +40,29 @@ impl Room {
 
     /// A box that no ray hits a sphere outside of, if it begins outside of the box and lies in the room.
     ///
-    /// With u half an epsilon and F the greatest distance of a point of the room from the centre, the computed coefficients of the
-    /// equation a t^2 + b t + c = 0 are off by few u of |d|^2, |d| F and F^2, and so a root that is computed leaves less than
-    /// 100 u F^2 of it: by so much the squared distance of the hit from the centre exceeds that of the radius. The other root of the
-    /// repaired equation is c / q: outside of the box c is over 500 u F^2, and where the line meets the sphere q^2 is then over
-    /// 400 u a F^2, so that the error of q adds a few u F^2 only.
+    /// With u half an epsilon and F the greatest distance of a point of the room from the centre, the computed
+    /// coefficients of the equation a t^2 + b t + c = 0 are off by few u of |d|^2, |d| F and F^2, and so a root that is
+    /// computed leaves less than 100 u F^2 of it: by so much the squared distance of the hit from the centre exceeds
+    /// that of the radius. The other root of the repaired equation is c / q: outside of the box c is over 500 u F^2,
+    /// and where the line meets the sphere q^2 is then over 400 u a F^2, so that the error of q adds a few u F^2 only.
     pub(crate) fn sphere_box(&self, sphere: &Sphere) -> (Vec3, Vec3) {
         let (center, radius) = (sphere.center.as_dvec3(), DVec3::splat(self.widened(sphere, SPHERE_ROUNDING)));
         ((center - radius).as_vec3(), (center + radius).as_vec3())
     }
 
-    /// How far a line from one place in the room to another must keep from a sphere's centre, so that no ray hits it that begins up
-    /// to a distance d from the one and ends at the other, if d is added to it.
+    /// How far a line from one place in the room to another must keep from a sphere's centre, so that no ray hits it
+    /// that begins up to a distance d from the one and ends at the other, if d is added to it.
     ///
-    /// Such a ray's points are no farther than d from the line's. What [`Room::sphere_box`] says of a ray that begins outside of the
-    /// box holds outside of the sphere with its margin; this has two, of which one is 512 u F^2, for what is lost where the line's
-    /// squared distance is computed: less than 100 u F^2, as all vectors are no longer than 2 F.
+    /// Such a ray's points are no farther than d from the line's. What [`Room::sphere_box`] says of a ray that begins
+    /// outside of the box holds outside of the sphere with its margin; this has two, of which one is 512 u F^2, for
+    /// what is lost where the line's squared distance is computed: less than 100 u F^2, as all vectors are no longer
+    /// than 2 F.
     pub(crate) fn berth(&self, sphere: &Sphere) -> f64 {
         self.widened(sphere, 2.0 * SPHERE_ROUNDING)
     }
 
-    /// A sphere's radius whose square is greater by some times the square of the greatest distance from its centre in the room.
+    /// A sphere's radius whose square is greater by some times the square of the greatest distance from its centre in
+    /// the room.
     fn widened(&self, sphere: &Sphere, by: f64) -> f64 {
         (f64::from(sphere.radius).powi(2) + by * self.farthest(sphere.center.as_dvec3()).length_squared()).sqrt()
     }
@@ -95,7 +98,8 @@ mod tests {
         for k in 0..400_000 {
             let sphere = sphere(k);
             let (lower, upper) = ROOM.sphere_box(&sphere);
-            // Both ends close to where a line touches the sphere at its farthest, a little before the face or behind it.
+            // Both ends close to where a line touches the sphere at its farthest, a little before the face or behind
+            // it.
             let axis = (k / 2 % 3) as usize;
             let off = [0.0, 1e-3, 1e-5, -1e-4, -0.2, -4.0, -40.0, 30.0];
             let end = |salt: u32| {

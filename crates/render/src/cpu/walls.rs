@@ -1,8 +1,8 @@
-//! What a shadow ray need not be tested against: squares that have both of its ends on one side, the mesh and spheres where both
-//! lie beyond one face of their boxes, and VPLs that look the same way as the surface does.
+//! What a shadow ray need not be tested against: squares that have both of its ends on one side, the mesh and spheres
+//! where both lie beyond one face of their boxes, and VPLs that look the same way as the surface does.
 //!
-//! The thesis' scenes are rooms of squares around a mesh or spheres: nothing in a room is behind its walls, and a test per ray and
-//! wall would find that out again and again.
+//! The thesis' scenes are rooms of squares around a mesh or spheres: nothing in a room is behind its walls, and a test
+//! per ray and wall would find that out again and again.
 
 use super::room::Room;
 use super::tracer::Tracer;
@@ -31,7 +31,8 @@ const ROUNDING: f64 = 5.0 * (f32::EPSILON / 2.0) as f64;
 
 /// On which side of some planes something lies, a bit each; in neither mask where that is not sure.
 ///
-/// The planes are those of the first squares and, from [`FEW`] on, the faces of boxes: the mesh's, then those of the first spheres.
+/// The planes are those of the first squares and, from [`FEW`] on, the faces of boxes: the mesh's, then those of the
+/// first spheres.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Sides {
     /// Where the normal points to.
@@ -163,12 +164,13 @@ impl Walls {
         self.blocks[block as usize].sides
     }
 
-    /// How near to a square's plane a shadow ray may begin, on either side, to cross it before hits count, if it ends in the room far
-    /// from the plane. `epsilon` is `spawn_epsilon` at its origin.
+    /// How near to a square's plane a shadow ray may begin, on either side, to cross it before hits count, if it ends
+    /// in the room far from the plane. `epsilon` is `spawn_epsilon` at its origin.
     ///
-    /// A surface is rarely in its own plane to the last bit, and no light would be on its side for certain. With the height p where the
-    /// ray begins, the plane is crossed at |t| < |p| / (v - |p|), v being a [`FAR`]th of the diagonal or more; with all errors, less
-    /// than 2 % above |p| / v. Hits count from 0.001 or from epsilon by the ray's length, which is no more than the diagonal.
+    /// A surface is rarely in its own plane to the last bit, and no light would be on its side for certain. With the
+    /// height p where the ray begins, the plane is crossed at |t| < |p| / (v - |p|), v being a [`FAR`]th of the
+    /// diagonal or more; with all errors, less than 2 % above |p| / v. Hits count from 0.001 or from epsilon by the
+    /// ray's length, which is no more than the diagonal.
     pub(crate) fn verge(&self, rules: Rules, epsilon: f32) -> f32 {
         let t_min = match rules {
             Rules::Original => ORIGINAL_EPSILON,
@@ -188,8 +190,8 @@ impl Walls {
         Outlook(self.directions.iter().take_while(|&&direction| direction != normal).count() as u32)
     }
 
-    /// Whether the VPLs of a block look the way that a surface does, and so neither lights the other: where normal and direction
-    /// are equal, the cosine at one is that at the other with the other sign, to the last bit.
+    /// Whether the VPLs of a block look the way that a surface does, and so neither lights the other: where normal and
+    /// direction are equal, the cosine at one is that at the other with the other sign, to the last bit.
     pub(crate) fn is_turned_away(&self, block: u32, Outlook(number): Outlook) -> bool {
         self.blocks[block as usize].direction == number
     }
@@ -220,12 +222,13 @@ fn planes(geometry: &Geometry<'_>, boxes: &[(Vec3, Vec3)]) -> Vec<Plane> {
     squares.chain(faces).collect()
 }
 
-/// On which sides of planes a VPL lies so far that no rounding lets a ray from a point in a room towards it cross them, provided
-/// that the point's height above the plane is not of the other sign. None, for a VPL outside of the room.
+/// On which sides of planes a VPL lies so far that no rounding lets a ray from a point in a room towards it cross them,
+/// provided that the point's height above the plane is not of the other sign. None, for a VPL outside of the room.
 ///
-/// With the heights p and v of point and VPL along the normal, seen from the plane, it is crossed at t = p / (p - v): at 1 or
-/// beyond, or before 0, where v has the sign of p. `intersect_square` computes that from p and from the slope p - v; if |v| is
-/// more than their errors together, what is rounded keeps that order. A box's face is met at a t that is rounded no worse.
+/// With the heights p and v of point and VPL along the normal, seen from the plane, it is crossed at t = p / (p - v):
+/// at 1 or beyond, or before 0, where v has the sign of p. `intersect_square` computes that from p and from the slope p
+/// - v; if |v| is more than their errors together, what is rounded keeps that order. A box's face is met at a t that is
+/// rounded no worse.
 fn sides_of(planes: &[Plane], position: Vec3, room: &Room) -> Sides {
     let mut sides = Sides::default();
     if !room.contains(position) {

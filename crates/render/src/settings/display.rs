@@ -1,4 +1,4 @@
-//! How a picture is shown.
+//! How a picture is displayed.
 
 use lightcuts_image::{GlobalToneMapping, LocalToneMapping, ToneMapping, Transfer};
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ pub struct Display {
     pub global: GlobalToneMapping,
     /// Parameters of the local operator.
     pub local: LocalToneMapping,
-    /// Transfer curve; the thesis shows values as they are.
+    /// Transfer function; the thesis shows values as they are.
     pub transfer: Transfer,
 }
 
