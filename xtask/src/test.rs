@@ -8,10 +8,17 @@ use anyhow::{Context as _, Result, bail};
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, Stdio};
 
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Install no packages of the system: tests that need a browser or a Vulkan driver are skipped where there is none.
+    #[arg(long)]
+    no_install: bool,
+}
+
 /// Runs the workspace's tests and documentation examples.
-pub(crate) fn run() -> Result<()> {
-    browser::provide();
-    vulkan::provide();
+pub(crate) fn run(args: &Args) -> Result<()> {
+    browser::provide(!args.no_install);
+    vulkan::provide(!args.no_install);
     if has_nextest() {
         println!("tests run with cargo-nextest, documentation examples with cargo test");
         // First, so that the last line is that of nextest.
