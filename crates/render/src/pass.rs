@@ -1,6 +1,6 @@
 //! One tile of a pass over the picture on the CPU: camera rays of every pixel.
 
-use crate::cpu::{Tracer, Walls};
+use crate::cpu::{HalfSpaces, Tracer};
 use crate::device::{Pass, Placement, Seen, Shifts, TileResult, Wants};
 use crate::film::{Film, Tile};
 use crate::original::effective_probability;
@@ -55,11 +55,11 @@ impl Placement {
 
 impl Pass<'_> {
     /// Renders one tile.
-    pub(crate) fn render_tile(&self, tracer: Tracer<'_>, walls: &Walls, tile: &Tile) -> TileResult {
+    pub(crate) fn render_tile(&self, tracer: Tracer<'_>, half_spaces: &HalfSpaces, tile: &Tile) -> TileResult {
         let area = (tile.width * tile.height) as usize;
         let mut worker = Worker {
             pass: self,
-            shader: Shader::new(self.view.world, tracer, Some(self.lighting), walls),
+            shader: Shader::new(self.view.world, tracer, Some(self.lighting), half_spaces),
             tree: RayTree::new(self.view.max_depth),
             shifts: Vec::new(),
             samples: Vec::new(),

@@ -1,7 +1,8 @@
 //! Light at a hit: the scene's lights in the first pass, VPLs in the second.
 
 use crate::cpu::{
-    Blocks, Candidates, Gathered, Receiver, Tracer, Walls, evaluate, evaluate_together, select, select_exhaustively,
+    Blocks, Candidates, Gathered, HalfSpaces, Receiver, Tracer, evaluate, evaluate_together, select,
+    select_exhaustively,
 };
 use crate::device::{Lighting, VplLighting};
 use crate::settings::Strategy;
@@ -41,7 +42,7 @@ pub(crate) struct Shader<'a> {
     tracer: Tracer<'a>,
     /// None if rays are only traced.
     lighting: Option<Lighting<'a>>,
-    walls: &'a Walls,
+    half_spaces: &'a HalfSpaces,
     /// Place of the camera ray in the run, for random numbers: pixel and sample.
     pub(crate) place: (u32, u32),
     pub(crate) rays: Rays,
@@ -60,7 +61,12 @@ pub(crate) struct Shader<'a> {
 }
 
 impl<'a> Shader<'a> {
-    pub(crate) fn new(world: &'a World, tracer: Tracer<'a>, lighting: Option<Lighting<'a>>, walls: &'a Walls) -> Self {
+    pub(crate) fn new(
+        world: &'a World,
+        tracer: Tracer<'a>,
+        lighting: Option<Lighting<'a>>,
+        half_spaces: &'a HalfSpaces,
+    ) -> Self {
         let candidates = match lighting {
             Some(Lighting::Vpls(VplLighting { tree, strategy: Strategy::All, .. })) => tree.every_block(true).collect(),
             _ => Vec::new(),
@@ -69,7 +75,7 @@ impl<'a> Shader<'a> {
             world,
             tracer,
             lighting,
-            walls,
+            half_spaces,
             place: (0, 0),
             rays: Rays::default(),
             visits: TreeVisits::default(),
@@ -148,7 +154,8 @@ impl<'a> Shader<'a> {
             _ => &self.candidates_together[own.clone()],
         };
         let lists: Vec<&[Candidates]> = choices.iter().map(list).collect();
-        let gathered = evaluate_together(&self.tracer, &blocks(vpls, self.walls), &lists, threshold(vpls), &receivers);
+        let gathered =
+            evaluate_together(&self.tracer, &blocks(vpls, self.half_spaces), &lists, threshold(vpls), &receivers);
         for ((place, gathered), (_, visits)) in places.into_iter().zip(gathered).zip(choices) {
             self.gathered[place] = Some((gathered, visits));
         }
@@ -209,7 +216,10 @@ impl<'a> Shader<'a> {
             }
             let visits = choose(vpls, &self.tracer, (surface.point, surface.point), &mut self.candidates);
             let receiver = self.receiver(found);
-            (evaluate(&self.tracer, &blocks(vpls, self.walls), &self.candidates, threshold(vpls), &receiver), visits)
+            (
+                evaluate(&self.tracer, &blocks(vpls, self.half_spaces), &self.candidates, threshold(vpls), &receiver),
+                visits,
+            )
         });
         self.visits.add(&TreeVisits { shaded_hits: 1, selected: u64::from(gathered.chosen), ..visits });
         self.selected.push(gathered.chosen);
@@ -224,8 +234,8 @@ impl<'a> Shader<'a> {
     }
 }
 
-fn blocks<'a>(vpls: &VplLighting<'a>, walls: &'a Walls) -> Blocks<'a> {
-    Blocks { vpls: &vpls.tree.blocks, walls }
+fn blocks<'a>(vpls: &VplLighting<'a>, half_spaces: &'a HalfSpaces) -> Blocks<'a> {
+    Blocks { vpls: &vpls.tree.blocks, half_spaces }
 }
 
 /// The relevance that a VPL must reach; `None` if all are chosen.
