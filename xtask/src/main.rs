@@ -5,6 +5,7 @@ mod browser;
 mod ci;
 #[cfg(test)]
 mod docs;
+mod examples;
 mod gallery;
 mod model_files;
 mod models;

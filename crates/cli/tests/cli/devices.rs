@@ -40,7 +40,7 @@ fn a_device_that_is_not_there_is_bad_usage() {
     let folder = Folder::new();
     for arguments in ["--device nonsense", "--station-device tree=nonsense", "--device nonsense --dry-run"] {
         let said = stderr(&folder.run(&format!("render scene.txt {arguments}")).code(2));
-        assert!(said.contains("there is no device `nonsense`") && said.contains("here are the CPU"), "{said}");
+        assert!(said.contains("there is no device `nonsense`") && said.contains("available: the CPU"), "{said}");
         assert!(!folder.has("scene.png"));
     }
     for (arguments, expected) in [
