@@ -1,6 +1,6 @@
 //! Holds the declarations of the flags against the settings that they set.
 
-use super::{Cli, Command, command, scope_of};
+use super::{Cli, Command, RenderArgs, command, scope_of};
 use clap::Parser;
 use clap::builder::PossibleValue;
 use lightcuts::Settings;
@@ -8,11 +8,16 @@ use lightcuts::rendering::{Model, Scope};
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
-/// The settings that a command line sets.
-fn flags(arguments: &[&str]) -> Table {
+/// The arguments of a `render`.
+fn parsed(arguments: &[&str]) -> Box<RenderArgs> {
     let words = ["lightcuts", "render", "scene"].iter().chain(arguments);
     let Command::Render(args) = Cli::try_parse_from(words).unwrap().command else { panic!("not `render`") };
-    Table::try_from(&args.settings).unwrap()
+    args
+}
+
+/// The settings that a command line sets.
+fn flags(arguments: &[&str]) -> Table {
+    parsed(arguments).settings.table()
 }
 
 /// Every key with a value, as `table.key`.
@@ -109,6 +114,12 @@ fn every_setting_has_one_flag_whose_help_tells_the_defaults() {
             // The option's id is its key.
             assert_eq!(leaves(&set, "").into_keys().collect::<Vec<_>>(), [arg.get_id().as_str()], "--{flag}");
         }
+        let scope = Scope::of(arg.get_id().as_str()).unwrap();
+        let args = parsed(&[&format!("--{flag}={}", values[0])]);
+        for model in [Model::Thesis, Model::Physical] {
+            let foreign = if scope.includes(model) { Vec::new() } else { vec![format!("--{flag}")] };
+            assert_eq!(args.foreign_options(model), foreign);
+        }
         let key = arg.get_id().as_str();
         let default = expected.remove(key).unwrap_or_else(|| panic!("--{flag}: no or second flag for {key}"));
         let help = arg.get_help().unwrap().to_string();
@@ -154,8 +165,7 @@ fn flags_offer_every_word_that_the_settings_accept() {
 
 #[test]
 fn options_are_told_as_they_are_typed() {
-    let words = ["lightcuts", "render", "scene", "--size=3x4", "--no-second-pass", "--bloom", "--read-vpls=v.csv"];
-    let Command::Render(args) = Cli::try_parse_from(words).unwrap().command else { panic!("not `render`") };
+    let args = parsed(&["--size=3x4", "--no-second-pass", "--bloom", "--read-vpls=v.csv"]);
     let foreign = args.foreign_options(Model::Physical);
     assert_eq!(foreign, ["--bloom", "--no-second-pass", "--read-vpls"]);
     assert_eq!(args.foreign_options(Model::Thesis), [""; 0]);

@@ -56,7 +56,7 @@ impl Job {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightcuts::rendering::{Model, Run};
+    use lightcuts::rendering::{Model, Run, Scope, keys_of, value_in};
 
     #[test]
     fn a_job_survives_its_text_exactly() {
@@ -111,6 +111,26 @@ mod tests {
             let both =
                 lent("[image]\nwidth = 9\n[caustics]\nenabled = true\n[filter]\nkind = 'gaussian'", model).unwrap();
             assert!(both.image.width == 9 && both.caustics.enabled);
+        }
+    }
+
+    #[test]
+    fn every_key_is_taken_by_its_model_and_refused_by_the_other() {
+        let mut settings = Settings::default();
+        settings.filter.radius = Some(1.0);
+        let table = toml::Table::try_from(&settings).unwrap();
+        for key in keys_of(&table).into_iter().filter(|key| key != "run.model") {
+            let text = format!("# a job\n{key} = {}\n", value_in(&table, &key).unwrap());
+            for model in [Model::Thesis, Model::Physical] {
+                match (lent(&text, model), Scope::of(&key).unwrap().includes(model)) {
+                    (Ok(_), true) => {}
+                    (Err(said), false) => assert!(
+                        said.starts_with("job.toml:2:") && said.contains(&format!("`{key}` has no meaning in the")),
+                        "{said}"
+                    ),
+                    (found, _) => panic!("{text} in {model:?}: {found:?}"),
+                }
+            }
         }
     }
 
