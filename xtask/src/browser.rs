@@ -16,9 +16,10 @@ const NEED: Need = Need {
     ubuntu: &["chromium-browser", "chromium-chromedriver"],
 };
 
-/// Installs Chromium and its driver unless they are there; says what it does. Without them tests of pages skip.
-pub(crate) fn provide() {
-    NEED.provide();
+/// Installs Chromium and its driver unless they are there, if that is allowed; says what it does. Without them tests of
+/// pages skip.
+pub(crate) fn provide(may_install: bool) {
+    NEED.provide(may_install);
 }
 
 /// Whether tests shall fail without a browser: where one is, and on build servers.

@@ -9,7 +9,8 @@ use std::time::Instant;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// Render what docs/gallery.md shows, into docs/images/gallery: scenes of the physical model, the same bytes on each run.
+    /// Render what docs/gallery.md shows, into docs/images/gallery: scenes of the physical model, the same bytes on
+    /// each run.
     #[arg(long)]
     docs: bool,
     /// Width and height of the pictures in pixels.

@@ -1,6 +1,6 @@
 //! What tests need of the system: found, or installed from the system's packages where that is possible.
 
-use anyhow::{Context as _, Result, ensure};
+use anyhow::{Context as _, Result, anyhow, ensure};
 use std::env::{self, consts::EXE_SUFFIX};
 use std::fs;
 use std::process::{Command, Stdio};
@@ -21,13 +21,16 @@ pub(crate) struct Need {
 }
 
 impl Need {
-    /// Installs it unless it is there; says what it does. That it cannot be installed is no error: tests skip then.
-    pub(crate) fn provide(&self) {
+    /// Installs it unless it is there, if that is allowed; says what it does. That it cannot be installed is no error:
+    /// tests skip then.
+    pub(crate) fn provide(&self, may_install: bool) {
         if (self.is_there)() {
             return;
         }
         println!("{} need {}, which are not here", self.tests, self.things);
-        if let Err(obstacle) = self.install() {
+        let installed =
+            if may_install { self.install() } else { Err(anyhow!("nothing is installed with --no-install")) };
+        if let Err(obstacle) = installed {
             let fate = if is_server() { "fail" } else { "skip" };
             println!("note: {obstacle}; without {} those tests {fate}", self.things);
         }
@@ -40,9 +43,10 @@ impl Need {
 
     fn install(&self) -> Result<()> {
         let release = fs::read_to_string("/etc/os-release").unwrap_or_default();
-        let packages = self.packages(&release).context("this task installs them on Debian and Ubuntu alone")?;
-        let prefix = privileges()
-            .with_context(|| format!("no right to install them; as root: apt-get install {}", packages.join(" ")))?;
+        let packages = self.packages(&release).context("this task installs them only on Debian and Ubuntu")?;
+        let prefix = privileges().with_context(|| {
+            format!("no permission to install them; as root: apt-get install {}", packages.join(" "))
+        })?;
         refresh_lists(prefix);
         let options = ["install", "--yes", "--no-install-recommends"];
         ensure!(apt_get(prefix, &[&options, packages].concat()), "that failed");

@@ -1,21 +1,29 @@
 //! `cargo xtask test`: all tests, with what they need: a browser for those of pages, a driver for those of the GPU.
 
-use crate::browser;
 use crate::project::{self, shown};
 use crate::tally::Tally;
-use crate::vulkan;
+use crate::{browser, examples, vulkan};
 use anyhow::{Context as _, Result, bail};
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, Stdio};
 
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Install no packages of the system: tests that need a browser or a Vulkan driver are skipped where there is none.
+    #[arg(long)]
+    no_install: bool,
+}
+
 /// Runs the workspace's tests and documentation examples.
-pub(crate) fn run() -> Result<()> {
-    browser::provide();
-    vulkan::provide();
+pub(crate) fn run(args: &Args) -> Result<()> {
+    browser::provide(!args.no_install);
+    vulkan::provide(!args.no_install);
     if has_nextest() {
         println!("tests run with cargo-nextest, documentation examples with cargo test");
-        // First, so that the last line is that of nextest.
-        run_counted(cargo().args(["test", "--doc", "--workspace", "--no-fail-fast"]), "documentation examples")?;
+        // First, so that the last line is that of nextest. Of packages that have some: rustdoc takes seconds to find none.
+        let packages = examples::packages()?;
+        let packages = packages.iter().flat_map(|package| ["--package", package]);
+        run_counted(cargo().args(["test", "--doc", "--no-fail-fast"]).args(packages), "documentation examples")?;
         project::run(cargo().args(["nextest", "run", "--workspace", "--no-fail-fast"]))
     } else {
         println!("tests run with cargo test; cargo-nextest is used where it is installed");

@@ -25,12 +25,12 @@ const NEED: Need = Need {
     ubuntu: PACKAGES,
 };
 
-/// Installs a driver unless one is there; says what it does. Without one tests of the GPU skip.
+/// Installs a driver unless one is there, if that is allowed; says what it does. Without one tests of the GPU skip.
 ///
 /// Nothing is to be done where the system itself brings an interface to GPUs: Metal, Direct3D 12.
-pub(crate) fn provide() {
+pub(crate) fn provide(may_install: bool) {
     if !cfg!(any(target_os = "macos", windows)) {
-        NEED.provide();
+        NEED.provide(may_install);
     }
 }
 

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Runs the command.
 pub(crate) fn run(args: &DevelopArgs) -> Result<Exit, Failure> {
     start_threads(&args.threads)?;
-    let mut settings = resolve(&Settings::for_physical(), &[], &args.flags)?;
+    let mut settings = resolve(&Settings::for_physical(), &[], &args.flags.settings())?;
     require_regular(&args.picture)
         .map_err(|why| Failure::input(format!("cannot read the picture {}: {why}", args.picture.display())))?;
     let output = output(args)?;

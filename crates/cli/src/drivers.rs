@@ -4,7 +4,7 @@
 //! Wayland library then writes `error: XDG_RUNTIME_DIR is invalid or not set in the environment.` to standard error, once
 //! per look at the devices, in the middle of progress that programs read. We choose devices ourselves, so the layer is
 //! switched off. Its switch is a variable that it reads from the environment of the process, which cannot be changed
-//! without `unsafe` once the process runs; so the process starts anew, as the same process.
+//! without `unsafe` once the process runs; so the process executes itself again.
 
 /// Switches the layer off if it would talk. Does not return then, unless that fails: then nothing is lost but silence.
 #[cfg(target_os = "linux")]

@@ -2,10 +2,10 @@
 //!
 //! | code | meaning |
 //! | --- | --- |
-//! | 0 | done |
+//! | 0 | success |
 //! | 1 | the render finished, but an output could not be written |
-//! | 2 | bad usage, job file or parameters; a device that is not there |
-//! | 3 | a scene, model, texture, picture or VPL file cannot be read or is malformed |
+//! | 2 | bad usage, job file or parameters; a device that does not exist |
+//! | 3 | a scene, model, texture, picture or VPL file is missing, cannot be read or is malformed |
 //! | 130 | interrupted; what was rendered so far is written |
 //!
 //! `compare` answers a question, so its codes are those of diff(1):
@@ -14,7 +14,7 @@
 //! | --- | --- |
 //! | 0 | the pictures are the same |
 //! | 1 | they differ |
-//! | 2 | trouble of any kind: nothing is said about the pictures |
+//! | 2 | an error of any kind: no verdict |
 
 use miette::{Diagnostic, MietteDiagnostic, Report};
 use std::process::ExitCode;
@@ -22,19 +22,19 @@ use std::process::ExitCode;
 /// How a command ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Exit {
-    /// All is done; of `compare`: the pictures are the same.
+    /// Success; of `compare`: the pictures are the same.
     Done,
     /// An output could not be written.
     NotWritten,
-    /// Bad usage, job file or parameters; a device that is not there.
+    /// Bad usage, job file or parameters; a device that does not exist.
     Usage,
     /// An input cannot be read.
     Input,
     /// Of `compare`: the pictures differ.
     Differs,
-    /// Of `compare`: it could not judge, whatever the reason.
+    /// Of `compare`: no verdict, whatever the reason.
     Trouble,
-    /// A signal broke it off.
+    /// Interrupted by a signal.
     Interrupted,
 }
 

@@ -13,7 +13,9 @@ pub(crate) fn listen() {
         if SIGNALS.fetch_add(1, Ordering::SeqCst) > 0 {
             std::process::exit(i32::from(Exit::Interrupted.code()));
         }
-        console::note("lightcuts: interrupted; stopping and writing what there is (once more: stop at once)");
+        console::note(
+            "lightcuts: interrupted; stopping and writing what was rendered so far (press again to stop at once)",
+        );
     });
     if let Err(error) = listening {
         tracing::warn!("no orderly end on Ctrl-C: {error}");

@@ -1,4 +1,4 @@
-//! The `lightcuts` command: render scenes with global illumination, look into them.
+//! The `lightcuts` command: render scenes with global illumination, inspect them, compare pictures.
 //!
 //! The command line ([`args`]) and job files ([`job`]) become one finished plan ([`plan`]) before anything is rendered;
 //! after that nobody asks what was typed. How the command can end is in [`exit`].
@@ -27,8 +27,6 @@ mod report;
 mod shell;
 mod summary;
 
-use clap::Parser;
-
 fn main() -> std::process::ExitCode {
-    command::run(&args::Cli::parse()).into()
+    command::run(&args::parse()).into()
 }

@@ -93,7 +93,7 @@ fn picture_kind(path: &Path) -> Result<Kind, Failure> {
         () if has_extension(path, "exr") => Ok(Kind::Exr),
         () if has_extension(path, "png") => Ok(Kind::Png),
         () => {
-            let message = format!("{} is no picture that can be written", path.display());
+            let message = format!("cannot write a picture named {}", path.display());
             Err(Failure::usage(message, "expected a name that ends in .exr or .png"))
         }
     }

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Separated as in PATH: more folders to search for models and textures.
 const SEARCH_VARIABLE: &str = "LIGHTCUTS_PATH";
 
-/// All that a render needs to know.
+/// Everything that a render needs.
 #[derive(Debug)]
 pub(crate) struct Plan {
     /// Of the job's model of light.
@@ -41,18 +41,15 @@ impl Plan {
         let outputs = Outputs::new(&args.output, &sources.scene)?;
         outputs.check(&sources.inputs)?;
         let imported = load(&sources.scene, &sources.search_path, sources.crease_angle)?;
-        let settings = resolved(&imported.scene, &sources.files, args)?;
-        job::require_fitting(&args.settings, settings.run.model)?;
-        let scene = in_model(imported.scene, &settings)?;
+        let model = fitting_model(&imported.scene, &sources.files, args)?;
+        let settings = job::resolve(&recommended(&imported.scene, model), &sources.files, &args.settings)?;
+        let scene = in_model(imported.scene, &settings);
         sources.inputs.extend(imported.files);
         outputs.check(&sources.inputs)?;
         let Sources { scene: file, search_path, crease_angle, read_vpls, .. } = sources;
-        if settings.run.model == Model::Physical && (read_vpls.is_some() || args.output.write_vpls.is_some()) {
-            return Err(Failure::usage(
-                "the physical model has no VPLs to read or write: each pass makes its own".to_owned(),
-                "leave out --read-vpls and --write-vpls",
-            ));
-        }
+        // A job of the thesis' model may name some, and be rendered in the other one, which makes new VPLs in each
+        // pass.
+        let read_vpls = read_vpls.filter(|_| model == Model::Thesis);
         Ok(Self { scene, job: Job { scene: file, search_path, crease_angle, read_vpls, settings }, outputs })
     }
 }
@@ -92,30 +89,44 @@ impl Sources {
     }
 }
 
-/// The settings, over what the scene recommends for the model that they name.
-fn resolved(scene: &AnyScene, files: &[JobFile], args: &RenderArgs) -> Result<Settings, Failure> {
-    let recommended = match scene {
-        AnyScene::Thesis(scene) => Settings::for_scene(scene),
-        AnyScene::Physical(_) => Settings::for_physical(),
+/// The model of light of the render. Fails if it cannot render the scene, or if an option has no meaning in it.
+fn fitting_model(scene: &AnyScene, files: &[JobFile], args: &RenderArgs) -> Result<Model, Failure> {
+    let of_scene = match scene {
+        AnyScene::Thesis(_) => Model::Thesis,
+        AnyScene::Physical(_) => Model::Physical,
     };
-    let settings = job::resolve(&recommended, files, &args.settings)?;
-    if matches!(scene, AnyScene::Thesis(_)) && settings.run.model == Model::Physical {
-        return job::resolve(&Settings::for_physical(), files, &args.settings);
+    let model = job::model(of_scene, files, &args.settings);
+    if model == Model::Thesis && of_scene == Model::Physical {
+        let culprit = files.iter().rev().find(|file| file.model().is_some());
+        // Flags win over files.
+        let culprit = culprit.filter(|_| job::model(of_scene, &[], &args.settings) == Model::Physical);
+        return Err(culprit.map_or_else(
+            || {
+                let message = "the scene is of the physical model and cannot be rendered in the thesis' model";
+                Failure::usage(message, "leave out --model")
+            },
+            JobFile::wrong_model,
+        ));
     }
-    Ok(settings)
+    job::require_fitting(args, model, of_scene)?;
+    Ok(model)
 }
 
-/// The scene in the model of light that the settings name.
-fn in_model(scene: AnyScene, settings: &Settings) -> Result<AnyScene, Failure> {
+/// The built-in defaults with what the scene recommends for a model of light.
+fn recommended(scene: &AnyScene, model: Model) -> Settings {
+    match (scene, model) {
+        (AnyScene::Thesis(scene), Model::Thesis) => Settings::for_scene(scene),
+        _ => Settings::for_physical(),
+    }
+}
+
+/// The scene in the model of light that the settings name, which can render it.
+fn in_model(scene: AnyScene, settings: &Settings) -> AnyScene {
     match (scene, settings.run.model) {
         (AnyScene::Thesis(scene), Model::Physical) => {
-            Ok(AnyScene::Physical(from_thesis(&scene, settings.physical.light_scale)))
+            AnyScene::Physical(from_thesis(&scene, settings.physical.light_scale))
         }
-        (AnyScene::Physical(_), Model::Thesis) => Err(Failure::usage(
-            "the scene is of the physical model and cannot be rendered with the thesis' one".to_owned(),
-            "leave out --model",
-        )),
-        (scene, _) => Ok(scene),
+        (scene, _) => scene,
     }
 }
 

@@ -48,8 +48,8 @@ pub enum Content {
         /// Title of the bar chart.
         chart: String,
     },
-    /// Pictures of configurations in one scene side by side, with a slider between the first and each other one, and FLIP
-    /// maps.
+    /// Pictures of configurations in one scene side by side, with a slider between the first and each other one, and
+    /// FLIP maps.
     Images {
         /// Scene.
         scene: String,

@@ -1,8 +1,8 @@
 //! Experiments: from a plan of renders to results, one line each, and from those to a report.
 //!
-//! A plan is read from an experiment file and says every render ([`Plan`]); running it appends a line per finished render
-//! to `results.jsonl` ([`Runner`]), which is read again as [`Results`]. What the lines hold is in [`record`], what a
-//! report shows in [`layout`].
+//! A plan is read from an experiment file and says every render ([`Plan`]); running it appends a line per finished
+//! render to `results.jsonl` ([`Runner`]), which is read again as [`Results`]. What the lines hold is in [`record`],
+//! what a report shows in [`layout`].
 
 mod hash;
 pub mod layout;

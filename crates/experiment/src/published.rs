@@ -1,8 +1,8 @@
 //! Figures of others, read from CSV files, to stand beside ours.
 //!
 //! Times and counts have the columns `table, scene, run, config, first_pass_s, second_pass_s, total_s,
-//! light_ratio_percent, vpl_count`; accelerations the columns `table, row` and `SCENE_percent` for each scene. The first
-//! line names the columns, in any order. Only a light ratio and an acceleration may be empty.
+//! light_ratio_percent, vpl_count`; accelerations the columns `table, row` and `SCENE_percent` for each scene. The
+//! first line names the columns, in any order. Only a light ratio and an acceleration may be empty.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -165,7 +165,7 @@ fn acceleration(names: &csv::StringRecord, record: &csv::StringRecord) -> Result
             (_, Some(_)) if value.is_empty() => {}
             (_, Some(scene)) => {
                 let percent = value.parse().ok().filter(|percent: &f64| percent.is_finite());
-                let percent = percent.ok_or_else(|| format!("`{value}` in column `{name}` is no number"))?;
+                let percent = percent.ok_or_else(|| format!("`{value}` in column `{name}` is not a number"))?;
                 found.percent.insert(scene.to_owned(), percent);
             }
             (_, None) => return Err(format!("unknown column `{name}`; expected `table`, `row` or `SCENE{PERCENT}`")),
@@ -253,7 +253,7 @@ mod tests {
         let cases = [
             ("table,s_percent\n1,2\n", 1, "no column `row`"),
             ("table,row,s_percent\n5.4,a,1\n5.4,b,fast\n", 3, "`fast` in column `s_percent`"),
-            ("table,row,s_percent\n5.4,a,inf\n", 2, "is no number"),
+            ("table,row,s_percent\n5.4,a,inf\n", 2, "is not a number"),
             ("table,row,s\n5.4,a,1\n", 2, "unknown column `s`"),
             ("table,row,s_percent\n5.4,a,1,2\n", 2, "4 fields instead of 3"),
         ];

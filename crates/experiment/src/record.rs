@@ -1,7 +1,8 @@
 //! What `results.jsonl` holds: one JSON object per line, never changed once written.
 //!
-//! The first line is a [`Header`]; each finished render adds a [`Row`]. When an experiment file was edited, a new header
-//! is added before its rows, and the last header is the one that counts. Paths are relative to the file's folder.
+//! The first line is a [`Header`]; each finished render adds a [`Row`]. When an experiment file was edited, a new
+//! header is added before its rows, and the last header is the one that counts. Paths are relative to the file's
+//! folder.
 
 use crate::layout::Section;
 use crate::published::Published;
@@ -16,7 +17,7 @@ pub const FORMAT: u32 = 1;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Record {
-    /// What is measured and how it is told.
+    /// What is measured and how it is presented.
     Header(Box<Header>),
     /// A finished render.
     Run(Box<Row>),

@@ -187,7 +187,7 @@ fn parse_line(line: &[u8]) -> Result<Record, String> {
         Ok(Version { format: Some(format) }) if format != FORMAT => {
             Err(format!("the format is {format}; this version of lightcuts reads {FORMAT}"))
         }
-        _ => serde_json::from_slice(line).map_err(|error| format!("this is no record: {error}")),
+        _ => serde_json::from_slice(line).map_err(|error| format!("this is not a record: {error}")),
     }
 }
 

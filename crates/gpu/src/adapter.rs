@@ -1,4 +1,4 @@
-//! Adapters: what there is, what it can do, and which one is taken.
+//! Adapters: which ones exist, what they can do, and which one is used.
 
 use lightcuts_render::device::{DeviceFault, DeviceKind};
 use std::fmt;
@@ -123,8 +123,8 @@ pub fn adapters() -> Vec<AdapterSummary> {
     ordered().iter().map(summary).collect()
 }
 
-/// The adapter that a choice takes, by its place in [`adapters`]; `None` for the processor. Fails if what was asked for is
-/// not there.
+/// The adapter that a choice takes, by its place in [`adapters`]; `None` for the processor. Fails if what was asked for
+/// is not there.
 pub fn choose(choice: &DeviceChoice, adapters: &[AdapterSummary]) -> Result<Option<usize>, DeviceFault> {
     let mut suited = adapters.iter().enumerate().filter(|(_, adapter)| adapter.unsuited.is_none());
     let place = |found: Option<(usize, &AdapterSummary)>| found.map(|(place, _)| place);

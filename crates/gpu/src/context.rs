@@ -45,7 +45,7 @@ pub(crate) struct Buffer {
     _held: Arc<Held>,
 }
 
-/// Bytes that are given back when the last handle goes.
+/// Bytes that are released with the last handle.
 #[derive(Debug)]
 struct Held {
     bytes: u64,
@@ -71,7 +71,8 @@ pub(crate) struct Kernel {
 pub(crate) const MAX_PARAMS: u64 = 256;
 
 impl Context {
-    /// Opens the adapter at a place in the order of [`crate::adapters`]; without `has_clock` it is not asked for timestamps.
+    /// Opens the adapter at a place in the order of [`crate::adapters`]; without `has_clock` it is not asked for
+    /// timestamps.
     pub(crate) fn open(place: usize, has_clock: bool, sabotage: &Arc<Sabotage>) -> Result<Self, DeviceFault> {
         let adapter = ordered().get(place).ok_or_else(|| DeviceFault::Lost("the adapter is not there".to_owned()))?;
         let info = adapter.get_info();

@@ -20,8 +20,8 @@ use std::time::{Duration, Instant};
 /// Tiles that the first batch has, and most that a later one may have: a million pixels.
 const FIRST_BATCH: usize = 64;
 const LARGEST_BATCH: usize = 4096;
-/// A batch that takes less is followed by a larger one, one that takes more than [`LONG_BATCH`] by a smaller one: so large
-/// devices have enough to do, and progress is seen and work is kept on small ones.
+/// A batch that takes less is followed by a larger one, one that takes more than [`LONG_BATCH`] by a smaller one: so
+/// large devices have enough to do, and progress is seen and work is kept on small ones.
 const SHORT_BATCH: Duration = Duration::from_millis(300);
 const LONG_BATCH: Duration = Duration::from_millis(1500);
 

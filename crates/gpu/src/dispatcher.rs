@@ -95,8 +95,8 @@ impl Dispatcher {
         Ok(())
     }
 
-    /// Runs a program with nothing to do, before the pending dispatches. Some drivers compile a program for their processor
-    /// when it first runs: that is no work of a submission, and must not count as such.
+    /// Runs a program with nothing to do, before the pending dispatches. Some drivers compile a program for their
+    /// processor when it first runs: that is no work of a submission, and must not count as such.
     pub(crate) fn warm_up(&self, context: &Context, kernel: &Kernel, find: Find<'_>) -> Result<(), DeviceFault> {
         let group = self.bind(context, kernel, find);
         let mut encoder = context.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

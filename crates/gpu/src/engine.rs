@@ -257,9 +257,9 @@ impl Engine {
         Ok(())
     }
 
-    /// Splits `total` items x `lights` lights, at most `at_once` of these in a dispatch. All lights come to some items in
-    /// order, so that sums do not depend on how the work was split. With `aligned`, `lights` and `at_once` are powers of
-    /// two and so are the ranges, at multiples of their length. A monitor that cancels ends it early.
+    /// Splits `total` items x `lights` lights, at most `at_once` of these in a dispatch. All lights come to some items
+    /// in order, so that sums do not depend on how the work was split. With `aligned`, `lights` and `at_once` are
+    /// powers of two and so are the ranges, at multiples of their length. A monitor that cancels ends it early.
     pub(crate) fn over_lights(
         &mut self,
         stage: StageName,
@@ -290,7 +290,7 @@ impl Engine {
     }
 }
 
-/// Lights of the next range, where there is room for so many.
+/// Lights of the next range, if so many fit.
 fn range_of_lights(room: f64, first: u32, lights: u32, aligned: bool) -> u32 {
     let room = room.clamp(1.0, f64::from(lights)) as u32;
     if !aligned {

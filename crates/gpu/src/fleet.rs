@@ -1,7 +1,7 @@
 //! The devices of a render: the processor, and adapters where stations want some.
 //!
-//! Who asks for what is settled in two steps: an [`Assignment`] needs no world, so that a name which fits nothing is told
-//! before a scene is read; a [`Fleet`] opens what is assigned.
+//! This takes two steps: an [`Assignment`] needs no world, so that a name that matches no adapter is reported before a
+//! scene is read; a [`Fleet`] opens the assigned devices.
 
 use crate::adapter::{AdapterSummary, DeviceChoice, adapters, choose};
 use crate::device::{GpuDevice, GpuOptions};
@@ -11,13 +11,13 @@ use lightcuts_world::World;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Files of which Linux has at least one if it has a graphics card: those of its own drivers, NVIDIA's, Tegra's, Windows'
-/// below it, ARM's and Qualcomm's.
+/// Device files, of which Linux has at least one if there is a graphics card: of the kernel's own drivers, NVIDIA,
+/// Tegra, WSL, ARM and Qualcomm.
 const CARD_FILES: [&str; 6] =
     ["/dev/dri", "/dev/nvidiactl", "/dev/nvhost-gpu", "/dev/dxg", "/dev/mali0", "/dev/kgsl-3d0"];
 
-/// The adapters among which something of what is wanted may be. Drivers are not loaded in vain, which would take memory and
-/// a good part of a second: not where the processor alone is wanted, nor to find a card where there is none.
+/// The adapters that the requested devices may be among. Drivers are loaded only if needed, as that takes memory and a
+/// good part of a second: not if only the CPU is requested, nor to look for a card where there is none.
 pub fn adapters_for(wanted: &PerStation<DeviceChoice>) -> Vec<AdapterSummary> {
     let needs_drivers = |choice: &DeviceChoice| match choice {
         DeviceChoice::Cpu => false,
@@ -27,12 +27,12 @@ pub fn adapters_for(wanted: &PerStation<DeviceChoice>) -> Vec<AdapterSummary> {
     if wanted.each().iter().any(needs_drivers) { adapters() } else { Vec::new() }
 }
 
-/// Whether this machine may have a graphics card, as far as that is known without its driver.
+/// Whether this machine may have a graphics card, as far as can be known without its driver.
 fn may_have_a_card() -> bool {
     !cfg!(target_os = "linux") || CARD_FILES.iter().any(|file| Path::new(file).exists())
 }
 
-/// A device that was asked for cannot be had; the text says why.
+/// A requested device is not available; the text says why.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct NoDevice(pub String);
@@ -47,11 +47,11 @@ impl From<DeviceFault> for NoDevice {
     }
 }
 
-/// Which adapter each station takes, if any.
+/// Which adapter each station uses, if any.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Assignment(PerStation<Seat>);
 
-/// What a station asked for, and the place in the list of adapters that this is; the processor has none.
+/// The device requested for a station, and its index in the list of adapters; the CPU has none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Seat {
     choice: DeviceChoice,
@@ -59,8 +59,8 @@ struct Seat {
 }
 
 impl Assignment {
-    /// Finds what is wanted among the adapters, of which there are those of [`adapters_for`]
-    /// at least. Fails if something was asked for that is not there.
+    /// Finds the requested devices among the adapters, which include at least those of [`adapters_for`]. Fails if one
+    /// is not there.
     pub fn new(wanted: &PerStation<DeviceChoice>, adapters: &[AdapterSummary]) -> Result<Self, NoDevice> {
         let seat = |choice: &DeviceChoice| {
             let adapter = choose(choice, adapters)?;
@@ -69,7 +69,7 @@ impl Assignment {
         wanted.map(seat).transpose().map(Self)
     }
 
-    /// Whether any station takes an adapter.
+    /// Whether any station uses an adapter.
     pub fn takes_adapters(&self) -> bool {
         self.0.each().iter().any(|seat| seat.adapter.is_some())
     }
@@ -78,14 +78,14 @@ impl Assignment {
 /// Open devices for one world.
 pub struct Fleet<'w> {
     cpu: CpuDevice<'w>,
-    /// By their place in the list of adapters; those that did not open, with the reason.
+    /// By their index in the list of adapters; those that did not open, with the reason.
     gpus: BTreeMap<usize, Result<GpuDevice<'w>, NoDevice>>,
     adapters: PerStation<Option<usize>>,
 }
 
 impl<'w> Fleet<'w> {
-    /// Opens what is assigned, each adapter once. An adapter that does not open is an error where it was asked for; where
-    /// the choice was free the processor takes its place, and `note` is told.
+    /// Opens the assigned devices, each adapter once. An adapter that does not open is an error if it was requested;
+    /// with `Auto`, falls back to the CPU and reports through `note`.
     pub fn open(
         assignment: &Assignment,
         world: &'w World,

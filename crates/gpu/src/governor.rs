@@ -12,8 +12,8 @@ const PLANNED_SHARE: f64 = 0.5;
 const FIRST_COST: f64 = 4e-6;
 /// A cost falls at most to this share of what it was before: a submission is at most twice as large as the one before.
 const GREATEST_FALL: f64 = 0.5;
-/// The same once a submission came near what was planned. What was cheap then says little of what comes next: camera rays
-/// into the sky cost almost nothing until the next tile shows the scene.
+/// The same once a submission came near what was planned. What was cheap then says little of what comes next: camera
+/// rays into the sky cost almost nothing until the next tile shows the scene.
 const GREATEST_FALL_SETTLED: f64 = 0.95;
 /// Share of the plan from which on a cost is settled.
 const SETTLED_SHARE: f64 = 0.5;
@@ -23,8 +23,8 @@ const FIRST_BIN: f64 = 0.000_25;
 /// A stage's name: that of its program.
 pub(crate) type StageName = &'static str;
 
-/// What costs are learnt apart for: many a mirrored or refracted ray meets nothing, so the deeper layers of ray trees say
-/// nothing of the first.
+/// What costs are learnt apart for: many a mirrored or refracted ray meets nothing, so the deeper layers of ray trees
+/// say nothing of the first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Work {
     pub(crate) stage: StageName,
@@ -43,7 +43,7 @@ struct Cost {
 pub(crate) struct Governor {
     budget_s: f64,
     costs: BTreeMap<Work, Cost>,
-    /// Whether the work at hand is in a deeper layer than the first.
+    /// Whether the current work is in a deeper layer than the first.
     pub(crate) is_deep: bool,
     pub(crate) report: GovernorReport,
 }
@@ -53,7 +53,8 @@ pub(crate) struct Governor {
 pub struct GovernorReport {
     /// Budget of a submission in seconds.
     pub budget_s: f64,
-    /// Submissions by their duration: of the bin k those that took less than 0.25 ms x 2^k, and not less than half that.
+    /// Submissions by their duration: of the bin k those that took less than 0.25 ms x 2^k, and not less than half
+    /// that.
     pub histogram: Vec<u64>,
     /// Number of submissions.
     pub submissions: u64,
@@ -85,7 +86,7 @@ impl Governor {
         Self { budget_s, costs: BTreeMap::new(), is_deep: false, report }
     }
 
-    /// A stage in the layer at hand.
+    /// A stage in the current layer.
     pub(crate) fn work(&self, stage: StageName) -> Work {
         Work { stage, is_deep: self.is_deep }
     }
@@ -122,7 +123,7 @@ impl Governor {
         }
     }
 
-    /// Takes note of a whole submission that began and ended so long after the first one began.
+    /// Records a whole submission; begin and end are measured from the beginning of the first one.
     pub(crate) fn finish(&mut self, began_s: f64, seconds: f64) {
         let report = &mut self.report;
         let bin = (seconds / FIRST_BIN).max(0.5).log2().floor() as i64 + 1;

@@ -1,4 +1,5 @@
-//! Photons shot on the device: counted first, then stored where the counts say, so that their order is that of emission.
+//! Photons shot on the device: counted first, then stored where the counts say, so that their order is that of
+//! emission.
 
 use crate::counters::{self, Counter};
 use crate::engine::Engine;

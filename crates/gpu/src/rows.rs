@@ -1,4 +1,5 @@
-//! The original's first pass needs its rows one after the other: where a row's draws begin depends on the hits before it.
+//! The original's first pass needs its rows one after the other: where a row's draws begin depends on the hits before
+//! it.
 
 use crate::engine::Engine;
 use crate::records::RowParams;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// When a device is to fail. Counts go on over the devices that take a failed one's place.
+/// When a device is to fail. Counts continue over the devices that replace a failed one.
 #[derive(Debug, Default)]
 pub struct Sabotage {
     /// Numbers of submissions, from 0, before which the device is destroyed.

@@ -11,7 +11,7 @@ pub(crate) const SCAN_BLOCK: u32 = 1024;
 const LEVELS: [&str; 4] = ["words", "block_sums", "block_sums_2", "block_sums_3"];
 
 impl Engine {
-    /// Allocates `words` for so many numbers, with the sums of their blocks.
+    /// Allocates `words` for this many numbers, with the sums of their blocks.
     pub(crate) fn reserve_words(&mut self, count: u32) -> Result<(), DeviceFault> {
         let mut size = count.max(1);
         for name in LEVELS {

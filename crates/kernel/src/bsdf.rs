@@ -1,12 +1,12 @@
 //! Materials of the physical model at one point: value, samples and densities.
 //!
-//! Directions are unit vectors away from the surface, in its frame, whose normal is +z: `wo` to where light is wanted, `wi`
-//! to where it comes from. Values are those of the BSDF, without the cosine. Materials but dielectrics are the same on
-//! both sides.
+//! Directions are unit vectors away from the surface, in its frame, whose normal is +z: `wo` to where light is wanted,
+//! `wi` to where it comes from. Values are those of the BSDF, without the cosine. Materials but dielectrics are the
+//! same on both sides.
 //!
-//! Microfacets alone lose light that would meet several of them. Tables of each material say how much (see
-//! [`energy_at`]); it is given back by a matt lobe, which keeps reciprocity (Kulla & Conty 2017, "Revisiting Physically Based
-//! Shading at Imageworks").
+//! Single scattering by microfacets loses the energy of multiple scattering. Tables of each material say how much (see
+//! [`energy_at`]); it is compensated by a diffuse lobe, which is reciprocal (Kulla & Conty 2017, "Revisiting Physically
+//! Based Shading at Imageworks").
 
 use crate::dielectric::{dielectric_pdf, dielectric_value, sample_dielectric};
 use crate::fresnel::{fresnel_conductor, fresnel_dielectric};
@@ -17,22 +17,22 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// Matt.
+/// Diffuse.
 pub const LAMBERT: u32 = 0;
-/// Matt with a Phong lobe (Lafortune & Willems 1994).
+/// Diffuse with a Phong lobe (Lafortune & Willems 1994).
 pub const PHONG: u32 = 1;
 /// A metal.
 pub const CONDUCTOR: u32 = 2;
 /// Glass.
 pub const DIELECTRIC: u32 = 3;
-/// Matt under a clear coat.
+/// Diffuse under a clear coat.
 pub const PLASTIC: u32 = 4;
 /// A perfect mirror.
 pub const MIRROR: u32 = 5;
 
-/// Lobes that send light evenly to all directions.
+/// Lobes that scatter light evenly in all directions.
 pub const MATT: u32 = 1;
-/// Lobes about a direction.
+/// Lobes around a direction.
 pub const GLOSSY: u32 = 2;
 /// Single directions.
 pub const SPECULAR: u32 = 4;
@@ -48,7 +48,7 @@ pub const ENERGY_FLOATS: usize = 2 * ENERGY_ENTRIES + 4;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Bsdf {
-    /// Colour of what is matt.
+    /// Diffuse colour.
     pub diffuse: Vec3,
     /// One of the kinds.
     pub kind: u32,
@@ -68,8 +68,8 @@ pub struct Bsdf {
     pub padding: [u32; 2],
 }
 
-/// What a path carries: light to the camera, or importance to a light. They differ where light is refracted, because radiance
-/// is compressed in the denser medium (Veach 1997, section 5.2).
+/// What a path carries: light to the camera, or importance to a light. They differ where light is refracted, because
+/// radiance is compressed in the denser medium (Veach 1997, section 5.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Transport {
     /// From the camera: `wi` is where light comes from.
@@ -144,7 +144,7 @@ pub fn bsdf_value(bsdf: &Bsdf, tables: &[f32], lobes: u32, wo: Vec3, wi: Vec3, t
     value
 }
 
-/// Factor on a matt lobe: what a coat lets through both ways, scaled so that a white ground under it loses nothing.
+/// Factor on a diffuse lobe: what a coat lets through both ways, scaled so that a white ground under it loses nothing.
 fn matt_factor(bsdf: &Bsdf, tables: &[f32], cos_o: f32, cos_i: f32) -> f32 {
     match bsdf.kind {
         LAMBERT | PHONG => 1.0,
@@ -201,7 +201,7 @@ fn mean_conductor(bsdf: &Bsdf) -> Vec3 {
     at(NODES[0]) + at(NODES[1]) + at(NODES[2])
 }
 
-/// Chances of the lobes when a direction is drawn: matt, glossy or specular reflection. The rest is what dielectrics
+/// Chances of the lobes when a direction is drawn: diffuse, glossy or specular reflection. The rest is what dielectrics
 /// refract.
 fn chance_of_shine(bsdf: &Bsdf, tables: &[f32], lobes: u32, cos_o: f32) -> f32 {
     let has = lobes & lobes_of(bsdf);
@@ -220,8 +220,8 @@ fn chance_of_shine(bsdf: &Bsdf, tables: &[f32], lobes: u32, cos_o: f32) -> f32 {
     if matt + shine > 0.0 { shine / (matt + shine) } else { 0.0 }
 }
 
-/// Chance that a direction of a rough metal or dielectric is drawn from its microfacets, not from the matt lobe that stands for
-/// what they lose.
+/// Chance that a direction of a rough metal or dielectric is drawn from its microfacets, not from the diffuse lobe that
+/// stands for what they lose.
 pub(crate) fn chance_of_facets(bsdf: &Bsdf, tables: &[f32], is_inside: bool, cos_o: f32) -> f32 {
     if bsdf.kind == PLASTIC { 1.0 } else { energy_at(tables, bsdf.table, is_inside, cos_o).clamp(0.05, 1.0) }
 }

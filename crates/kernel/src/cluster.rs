@@ -52,7 +52,7 @@ pub struct BoundReceiver {
     pub normal: Vec3,
     /// The viewer's direction, mirrored about the normal.
     pub mirror: Vec3,
-    /// Squared distance below which light no longer grows.
+    /// Squared distance below which light is clamped.
     pub clamp_sq: f32,
     /// The material, as the viewer sees it.
     pub bsdf: BsdfBound,
@@ -66,8 +66,8 @@ pub fn box_distance_sq(center: Vec3, half: Vec3) -> f32 {
 
 /// The greatest cosine, at least 0, between a unit axis at the origin and a point of a box.
 ///
-/// In a frame whose third axis is the given one the box lies in an interval for each coordinate; the cosine grows with the third
-/// and falls with the size of the others.
+/// In a frame whose third axis is the given one the box lies in an interval for each coordinate; the cosine grows with
+/// the third and falls with the size of the others.
 pub fn box_cosine(axis: Vec3, center: Vec3, half: Vec3) -> f32 {
     let along = |unit: Vec3| (unit.dot(center), unit.abs().dot(half));
     let (z, reach) = along(axis);
@@ -93,7 +93,8 @@ pub fn widened_cosine(cos: f32, cos_cone: f32) -> f32 {
     (cos * cos_cone + sin(cos) * sin(cos_cone)).clamp(0.0, 1.0)
 }
 
-/// What bounds the greatest channel of a BSDF times the cosine, seen from one direction: the terms that are the same for all clusters.
+/// What bounds the greatest channel of a BSDF times the cosine, seen from one direction: the terms that are the same
+/// for all clusters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BsdfBound {
     /// Factor on the cosine to the normal.
@@ -108,7 +109,7 @@ pub struct BsdfBound {
     pub exponent: f32,
 }
 
-/// The bound of a BSDF seen under a cosine. `weights` are factors on its matt and on its glossy lobes.
+/// The bound of a BSDF seen under a cosine. `weights` are factors on its diffuse and on its glossy lobes.
 pub fn bsdf_bound(bsdf: &Bsdf, tables: &[f32], weights: [f32; 2], cos_o: f32) -> BsdfBound {
     let lobes = lobes_of(bsdf);
     let lost = || 1.0 - energy_at(tables, bsdf.table, false, cos_o);
@@ -141,13 +142,13 @@ pub fn is_shiny(bound: &BsdfBound) -> bool {
     bound.facets > 0.0 || bound.lobe > 0.0
 }
 
-/// An upper bound of the greatest channel times the cosine, over directions of which the cosines to the normal and to the mirror
-/// direction are at most the given ones.
+/// An upper bound of the greatest channel times the cosine, over directions of which the cosines to the normal and to
+/// the mirror direction are at most the given ones.
 pub fn greatest_bsdf(bound: &BsdfBound, cos_normal: f32, cos_mirror: f32) -> f32 {
     let mut greatest = bound.even * cos_normal;
     if bound.facets > 0.0 {
-        // Two half turns, about the normal and about the half vector, turn the mirror direction into the light's by twice
-        // the angle between both at most; the distribution falls with that angle.
+        // Two half turns, about the normal and about the half vector, turn the mirror direction into the light's by
+        // twice the angle between both at most; the distribution falls with that angle.
         let cos_half = (0.5 + 0.5 * cos_mirror).sqrt();
         greatest += bound.facets * ggx_distribution(cos_half, bound.alpha);
     }
@@ -157,8 +158,8 @@ pub fn greatest_bsdf(bound: &BsdfBound, cos_normal: f32, cos_mirror: f32) -> f32
     greatest
 }
 
-/// How much a cluster may matter: an upper bound of its light but for the distance, and between which squared distances its lights
-/// are.
+/// How much a cluster may matter: an upper bound of its light but for the distance, and between which squared distances
+/// its lights are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClusterReach {
     /// Light, as a sum of channels, at a distance of 1 at most.
@@ -193,9 +194,9 @@ pub fn reach_bound(reach: &ClusterReach) -> f32 {
     reach.factor / reach.nearest_sq.max(f32::MIN_POSITIVE) * BOUND_MARGIN
 }
 
-/// The probability with which the first of two clusters is drawn; `None` if neither sends anything. The mean of what their
-/// nearest and what their farthest corners suggest: the nearest alone would favour a large box near by (Yuksel 2019, "Stochastic
-/// Lightcuts", section 3.2).
+/// The probability with which the first of two clusters is drawn; `None` if neither sends anything. The mean of what
+/// their nearest and what their farthest corners suggest: the nearest alone would favour a large box near by (Yuksel
+/// 2019, "Stochastic Lightcuts", section 3.2).
 pub fn first_probability(first: &ClusterReach, second: &ClusterReach) -> Option<f32> {
     if first.factor <= 0.0 || second.factor <= 0.0 {
         let is_any = first.factor + second.factor > 0.0;

@@ -1,5 +1,5 @@
-//! Lights of the physical model, each by itself: a direction towards it, what comes from there, and how dense the directions
-//! are.
+//! Lights of the physical model, each by itself: a direction towards it, what comes from there, and how dense the
+//! directions are.
 
 use crate::sampling::{frame, sin_cos_turns};
 use bytemuck::{Pod, Zeroable};
@@ -10,13 +10,13 @@ use std::f32::consts::PI;
 pub const POINT: u32 = 0;
 /// A point that shines into a cone.
 pub const SPOT: u32 = 1;
-/// Parallel light.
+/// Directional light.
 pub const PARALLEL: u32 = 2;
-/// A luminous triangle.
+/// An emissive triangle.
 pub const TRIANGLE_LIGHT: u32 = 3;
-/// A luminous rectangle.
+/// An emissive rectangle.
 pub const RECTANGLE_LIGHT: u32 = 4;
-/// A luminous sphere.
+/// An emissive sphere.
 pub const SPHERE_LIGHT: u32 = 5;
 
 /// A light. 96 bytes.
@@ -35,7 +35,7 @@ pub struct Emitter {
     pub edge2: Vec3,
     /// Radius of a sphere.
     pub radius: f32,
-    /// Unit normal of a surface, axis of a spot, direction of travel of parallel light.
+    /// Unit normal of a surface, axis of a spot, direction of travel of directional light.
     pub direction: Vec3,
     /// Cosine of the angle up to which a spot is full.
     pub cos_inner: f32,
@@ -58,7 +58,7 @@ pub struct Emitter {
 pub struct EmitterSample {
     /// Unit vector towards the light.
     pub direction: Vec3,
-    /// Distance, infinite for parallel light.
+    /// Distance, infinite for directional light.
     pub distance: f32,
     /// Radiance, without its image; of lights without extent what arrives across the direction, per area.
     pub color: Vec3,
@@ -199,7 +199,7 @@ pub fn emitter_pdf(emitter: &Emitter, point: Vec3, direction: Vec3, distance: f3
     }
 }
 
-/// Power of a light in W, without its image; of parallel light what crosses a square unit.
+/// Power of a light in W, without its image; of directional light what crosses a square unit.
 pub fn emitter_power(emitter: &Emitter) -> Vec3 {
     let sides = if emitter.two_sided != 0 { 2.0 } else { 1.0 };
     match emitter.kind {

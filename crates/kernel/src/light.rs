@@ -7,7 +7,7 @@ use glam::Vec3;
 pub const OMNI: u32 = 0;
 /// A point that shines into the hemisphere around its direction, with a cosine factor.
 pub const HEMISPHERE: u32 = 1;
-/// Parallel light that travels along its direction.
+/// Directional light that travels along its direction.
 pub const DIRECTIONAL: u32 = 2;
 
 /// A light of the scene. 80 bytes.
@@ -36,7 +36,8 @@ pub struct Light {
     pub padding2: f32,
 }
 
-/// A virtual point light: a [`HEMISPHERE`] light with a diffuse colour only (Keller 1997; thesis, section 3.3). 48 bytes.
+/// A virtual point light: a [`HEMISPHERE`] light with a diffuse colour only (Keller 1997; thesis, section 3.3). 48
+/// bytes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 pub struct Vpl {

@@ -1,7 +1,7 @@
 //! The light tree of GPUs: a perfect binary tree over blocks of VPLs in Morton order, its nodes packed into 32 bytes.
 //!
-//! After Lin & Yuksel 2020, "Real-Time Stochastic Lightcuts": the children of node i are 2i and 2i + 1, the root is 1, a
-//! level is computed from the one below. Differs: Morton keys interleave positions with normals, leaves are blocks of
+//! After Lin & Yuksel 2020, "Real-Time Stochastic Lightcuts": the children of node i are 2i and 2i + 1, the root is 1,
+//! a level is computed from the one below. Differs: Morton keys interleave positions with normals, leaves are blocks of
 //! [`BLOCK_SIZE`] VPLs, and nodes carry what the thesis' relevance is bounded by.
 
 use crate::light::Vpl;
@@ -175,8 +175,8 @@ pub fn unpack_cluster(node: &PackedLightNode) -> LightCluster {
     }
 }
 
-/// A cosine less a margin against rounding, at least -1. It is clamped first: compilers of shaders otherwise add the margin to a
-/// part of the sum before.
+/// A cosine less a margin against rounding, at least -1. It is clamped first: compilers of shaders otherwise add the
+/// margin to a part of the sum before.
 pub fn below_cosine(cosine: f32) -> f32 {
     cosine.max(COSINE_MARGIN - 1.0) - COSINE_MARGIN
 }
@@ -197,8 +197,8 @@ pub fn vpl_cluster(vpl: &Vpl) -> LightCluster {
     }
 }
 
-/// A lower bound on intensities, where the cone permits one: nothing can be said of the least cosine in one that is wider
-/// than a hemisphere.
+/// A lower bound on intensities, where the cone permits one: nothing can be said of the least cosine in one that is
+/// wider than a hemisphere.
 pub fn least_intensity(intensity: f32, cos_spread: f32) -> f32 {
     if cos_spread > 0.0 { intensity } else { 0.0 }
 }

@@ -26,11 +26,11 @@ pub fn incidence(light: &Light, point: Vec3, normal: Vec3) -> Option<Incidence> 
     (cos_theta > 0.0 && cos_phi > 0.0).then_some(Incidence { to_light, cos_theta, cos_phi })
 }
 
-/// What a visible light adds to a surface, at most 1 per channel. `to_eye` is the vector from the point to the origin of
-/// the ray that found it.
+/// What a visible light adds to a surface, at most 1 per channel. `to_eye` is the vector from the point to the origin
+/// of the ray that found it.
 ///
-/// The half vector is that of the UNNORMALISED vectors, as in the original. The original gives [`DIRECTIONAL`] lights no
-/// diffuse term.
+/// The half vector is that of the UNNORMALISED vectors, as in the original. The original gives [`DIRECTIONAL`] lights
+/// no diffuse term.
 pub fn phong(light: &Light, material: &Material, at: &Incidence, normal: Vec3, to_eye: Vec3, rules: Rules) -> Vec3 {
     let mut color = light.ambient * material.ambient;
     if rules == Rules::Repaired || light.kind != DIRECTIONAL {
@@ -47,8 +47,8 @@ pub fn phong(light: &Light, material: &Material, at: &Incidence, normal: Vec3, t
     (color * (light.attenuation * at.cos_phi)).min(Vec3::ONE)
 }
 
-/// A VPL as seen from a point, before its visibility is known. Cosines are kept times the distance: without a root for each of the
-/// very many that are seen.
+/// A VPL as seen from a point, before its visibility is known. Cosines are kept times the distance: without a root for
+/// each of the very many that are seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VplIncidence {
     /// Vector from the point to the VPL.

@@ -6,7 +6,7 @@ use crate::sampling::frame;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-/// How many times the larger of a target's radius and distance from the origin parallel light starts before it.
+/// How many times the larger of a target's radius and distance from the origin directional light starts before it.
 const FAR_SIDE: f32 = 4.0;
 
 /// Light that fell on a point. 48 bytes.

@@ -16,7 +16,7 @@ pub const MAX_MIXES: u32 = 8;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Scatter {
-    /// Colour of what is matt.
+    /// Diffuse colour.
     pub color: Vec3,
     /// A kind of [`crate::bsdf`], or [`MIX`].
     pub kind: u32,
@@ -28,7 +28,7 @@ pub struct Scatter {
     pub absorption: Vec3,
     /// Refractive index inside, relative to outside.
     pub ior: f32,
-    /// Radiance that it sends out.
+    /// Emitted radiance.
     pub radiance: Vec3,
     /// Exponent of the Phong lobe.
     pub exponent: f32,

@@ -1,6 +1,8 @@
 //! Rendering with very many lights: global illumination from virtual point lights and lightcuts.
 //!
-//! This crate is the one door to the renderer's crates: everything that a program which embeds it needs, under one name.
+//! This crate re-exports what programs that embed the renderer need, under one name.
+//!
+//! Scenes have one of two models of light. The thesis' model (Phong shading without falloff, after Tong Zhang 2011):
 //!
 //! ```no_run
 //! use lightcuts::{ImportOptions, Options, Settings, Unwatched, World, image};
@@ -22,9 +24,30 @@
 //!
 //! The stations of a picture, one way only: [`load`] makes a [`SceneDesc`] of files, [`World::new`] makes a flat
 //! [`World`] of it, [`render()`] makes a [`Rendering`] of the world and the [`Settings`], and [`image`] makes files of
-//! that. A [`Monitor`] is told how far it is and may stop it.
+//! that. A [`Monitor`] receives the progress and may cancel the render.
 //!
-//! [`render_on`] lets each station run on a [`device`]; a [`gpu::Fleet`] opens those that are wanted:
+//! The physical model has radiometric units and converges to the solution of the rendering equation. [`load_any`] reads
+//! scenes of either model:
+//!
+//! ```no_run
+//! use lightcuts::{AnyScene, ImportOptions, PhysicalWorld, Settings, Simd, Unwatched, image};
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let scene = lightcuts::load_any("scene.toml".as_ref(), &ImportOptions::default())?.scene;
+//!     let AnyScene::Physical(scene) = scene else { return Err("not a scene of the physical model".into()) };
+//!     let world = PhysicalWorld::new(&scene)?;
+//!
+//!     let mut settings = Settings::for_physical();
+//!     settings.sampling.samples = 256;
+//!
+//!     let rendering = lightcuts::render_physical(&world, &settings, Simd::Auto, &Unwatched)?;
+//!     image::write_exr("scene.exr", &rendering.layers())?;
+//!     Ok(())
+//! }
+//! ```
+//!
+//! In the thesis' model, [`render_on`] runs each station on a [`device`]; a [`gpu::Fleet`] opens those that are
+//! requested:
 //!
 //! ```no_run
 //! use lightcuts::gpu::{self, Assignment, DeviceChoice, Fleet, GpuOptions};

@@ -1,11 +1,11 @@
 //! The devices at work on a render, and what happens when one does not return a result.
 //!
 //! A device that faults is revived once per render and asked again; after that the CPU does its work here and at every
-//! later station. What was finished before stays, so the picture is always whole.
+//! later station. What was finished before stays, so the picture is always complete.
 
 use crate::cpu::CpuDevice;
 use crate::device::{Device, DeviceFault, Pass, Tile, TileResult};
-use crate::monitor::{Monitor, Retold};
+use crate::monitor::{Monitor, RetryMonitor};
 use crate::stations::{Station, Stations};
 use crate::stats::StationDevice;
 
@@ -41,14 +41,14 @@ impl<'a> Crew<'a> {
         self.standing(station).map_or(&self.cpu, |device| device)
     }
 
-    /// Lets a station's device work until there is a result. What it tells the monitor twice is told once.
+    /// Runs a station on its device until there is a result. Progress that it reports twice is reported once.
     pub(crate) fn run<T>(
         &mut self,
         station: Station,
         monitor: &dyn Monitor,
         mut work: impl FnMut(&dyn Device, &dyn Monitor) -> Result<T, DeviceFault>,
     ) -> T {
-        let mut monitor = Retold::new(monitor);
+        let mut monitor = RetryMonitor::new(monitor);
         loop {
             if let Some(result) = self.attempt(station, &mut monitor, &mut work) {
                 return result;
@@ -56,8 +56,8 @@ impl<'a> Crew<'a> {
         }
     }
 
-    /// Renders tiles, as many at once as the device likes, and hands the results over in order. Returns whether all were
-    /// rendered: not if the monitor cancels.
+    /// Renders tiles, in batches of the device's preferred size, and hands the results over in order. Returns whether
+    /// all were rendered: not if the monitor cancels.
     pub(crate) fn render_tiles(
         &mut self,
         station: Station,
@@ -66,12 +66,12 @@ impl<'a> Crew<'a> {
         monitor: &dyn Monitor,
         mut merge: impl FnMut(TileResult),
     ) -> bool {
-        let mut monitor = Retold::new(monitor);
+        let mut monitor = RetryMonitor::new(monitor);
         let mut rest = tiles;
         while !rest.is_empty() {
             let (batch, later) = rest.split_at(self.at(station).batch().clamp(1, rest.len()));
             let render = |device: &dyn Device, monitor: &dyn Monitor| render_batch(device, pass, batch, monitor);
-            // After a fault the batch is cut anew: another device may like another size.
+            // After a fault the batches are divided again: another device may prefer another size.
             let Some(results) = self.attempt(station, &mut monitor, render) else { continue };
             rest = later;
             let complete = results.iter().all(Option::is_some);
@@ -88,7 +88,7 @@ impl<'a> Crew<'a> {
     fn attempt<T>(
         &mut self,
         station: Station,
-        monitor: &mut Retold<'_>,
+        monitor: &mut RetryMonitor<'_>,
         work: impl FnOnce(&dyn Device, &dyn Monitor) -> Result<T, DeviceFault>,
     ) -> Option<T> {
         monitor.begin_attempt();
@@ -123,9 +123,9 @@ impl<'a> Crew<'a> {
             "it faulted before, so the CPU does the rest of its work".to_owned()
         } else if let Err(gone) = self.revive(device) {
             self.dismissed.push(device);
-            format!("it cannot be set up anew ({gone}), so the CPU does the rest of its work")
+            format!("it cannot be reopened ({gone}), so the CPU does the rest of its work")
         } else {
-            "it was set up anew and goes on where it stopped".to_owned()
+            "it was reopened and continues where it stopped".to_owned()
         };
         monitor.note(&format!("{} on {}: {fault}; {outcome}", station.name(), device.info().name));
     }

@@ -1,7 +1,8 @@
 //! What a device is: the stations that may run anywhere, and the flat data that goes in and comes out.
 //!
-//! Every result has one layout, so that a station's result can be made on one device and used on another: that is how a
-//! fault is isolated. A device either returns the whole result or a [`DeviceFault`]; it never returns a part of one.
+//! Every result has one layout on all devices, so that a station's result can be computed on one device and used on
+//! another: that is how a fault is isolated. A device returns a complete result or a [`DeviceFault`], never a part of a
+//! result.
 
 pub use crate::cpu::{CpuDevice, Tracer, processor_name};
 pub use crate::film::{Film, Tile};
@@ -29,11 +30,11 @@ pub trait Device: Sync {
     /// What it is.
     fn info(&self) -> DeviceInfo;
 
-    /// Number of tiles that it likes to be given at once.
+    /// Preferred batch size, in tiles.
     fn batch(&self) -> usize;
 
-    /// Stations 3 and 5: one pass over some tiles. Calls [`Monitor::advance`] once per tile and looks at
-    /// [`Monitor::cancelled`]: a tile that was not rendered because of that is `None`. Results are in the order of `tiles`.
+    /// Stations 3 and 5: one pass over some tiles. Calls [`Monitor::advance`] once per tile and checks
+    /// [`Monitor::cancelled`]: a tile that was therefore not rendered is `None`. Results are in the order of `tiles`.
     fn render_tiles(
         &self,
         pass: &Pass<'_>,
@@ -41,11 +42,11 @@ pub trait Device: Sync {
         monitor: &dyn Monitor,
     ) -> Result<Vec<Option<TileResult>>, DeviceFault>;
 
-    /// Shifts of all pixels' samples in the original's first pass, bottom row first, in pixels: each row's depend on the
-    /// number of hits in the rows below.
+    /// Shifts of all pixels' samples in the original's first pass, bottom row first, in pixels: each row's depend on
+    /// the number of hits in the rows below.
     fn original_shifts(&self, view: &View<'_>) -> Result<Vec<[f32; 2]>, DeviceFault>;
 
-    /// Photons for caustics, with the number of rays that it took. Calls [`Monitor::advance`] once per row of each of the
+    /// Photons for caustics, with the number of rays traced. Calls [`Monitor::advance`] once per row of each of the
     /// [`photon_targets`]. A monitor that cancels gets those shot so far.
     fn shoot_photons(
         &self,
@@ -54,10 +55,10 @@ pub trait Device: Sync {
         monitor: &dyn Monitor,
     ) -> Result<(PhotonMap, u64), DeviceFault>;
 
-    /// The layout of light tree that this device gathers through with the least work.
+    /// The layout of the light tree that this device gathers fastest with.
     fn preferred_layout(&self) -> TreeLayout;
 
-    /// Station 4. The tree has the wanted layout if the device can build it, else another.
+    /// Station 4. The tree has the requested layout if the device can build it, else another one.
     fn build_tree(&self, vpls: &[Vpl], wanted: TreeLayout) -> Result<LightTree, DeviceFault>;
 
     /// Bloom of the finished picture; see [`lightcuts_image::bloom`].
@@ -66,7 +67,7 @@ pub trait Device: Sync {
     /// The picture as it is shown; see [`ToneMapping::apply`].
     fn tone_map(&self, image: &Image, operator: &ToneMapping) -> Result<Image, DeviceFault>;
 
-    /// Sets the device up anew after a fault. An error means that it is gone for good.
+    /// Reopens the device after a fault. An error means that it is lost for good.
     fn revive(&self) -> Result<(), DeviceFault>;
 }
 
@@ -101,16 +102,16 @@ impl DeviceKind {
     }
 }
 
-/// Why a device did not return a result. What it returned before stays valid.
+/// Why a device did not return a result. Earlier results stay valid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DeviceFault {
     /// The device went away, or its driver reset it.
     #[error("the device was lost: {0}")]
     Lost(String),
-    /// Its memory does not suffice.
+    /// Its memory is too small.
     #[error("out of memory on the device: {0}")]
     OutOfMemory(String),
-    /// It refused what it was asked for.
+    /// It refused the work.
     #[error("the device failed: {0}")]
     Failed(String),
 }
@@ -124,9 +125,9 @@ pub struct View<'a> {
     pub camera: Camera,
     /// Whether the original's defects hold.
     pub rules: Rules,
-    /// How samples become pixels.
+    /// Reconstruction filter.
     pub filter: &'a Filter,
-    /// Longest chain of mirrored and refracted rays, camera ray included.
+    /// Maximum ray depth: mirrored and refracted rays, the camera ray included.
     pub max_depth: u32,
 }
 
@@ -152,7 +153,7 @@ pub struct Pass<'a> {
     pub first_sample: u32,
     /// Pixels to render; all where absent.
     pub mask: Option<&'a [bool]>,
-    /// What is wanted besides colours.
+    /// Results besides colours.
     pub wants: Wants<'a>,
 }
 
@@ -176,7 +177,7 @@ pub enum Wants<'a> {
 pub struct Placement {
     /// Probability that a hit becomes a VPL.
     pub probability: f32,
-    /// Least r + g + b of its colour.
+    /// Minimum r + g + b of its colour.
     pub min_illumination: f32,
     /// Factor on the VPL's light.
     pub attenuation: f32,
@@ -203,7 +204,7 @@ pub struct VplLighting<'a> {
     pub tree: &'a LightTree,
     /// How they are chosen.
     pub strategy: Strategy,
-    /// Least relevance of a chosen VPL; not for [`Strategy::All`].
+    /// Minimum relevance of a chosen VPL; not for [`Strategy::All`].
     pub threshold: f32,
     /// Photons for caustics, if there are any.
     pub photons: Option<&'a PhotonMap>,

@@ -59,8 +59,8 @@ impl Film {
         Self::window(tile, filter, filter.border())
     }
 
-    /// The film [`around`](Self::around) a tile from its sums: row by row, the bottom row of the window first, each rgb and
-    /// weight. Panics if their number is another.
+    /// The film [`around`](Self::around) a tile from its sums: row by row, the bottom row of the window first, each rgb
+    /// and weight. Panics if their number is another.
     pub fn from_sums(tile: &Tile, filter: &Filter, sums: Vec<Vec4>) -> Self {
         let film = Self::around(tile, filter);
         assert_eq!(sums.len(), film.sums.len(), "a sum for each pixel of the window");

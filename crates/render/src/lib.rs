@@ -1,7 +1,9 @@
 //! The stations of the renderer: place VPLs, build the light tree, gather, develop.
 //!
-//! [`render`] takes a [`World`] and [`Settings`] and returns a [`Rendering`]. The same settings give the same picture bit
-//! for bit on any number of threads, with or without SIMD.
+//! [`render`] takes a [`World`] and [`Settings`] and returns a [`Rendering`]; [`render_physical`] does so in the
+//! physical model. The same settings give the same picture bit for bit on any number of threads, with or without SIMD,
+//! except where the physical model depends on measured times: [`Integrator::Auto`], [`Strategy::Auto`] and a time
+//! limit.
 
 mod cpu;
 mod crew;
@@ -37,7 +39,8 @@ pub use physical::{PhysicalRendering, render_physical};
 pub use rendering::Rendering;
 pub use settings::{
     AmbientOcclusion, Bloom, Caustics, Display, Filter, FilterKind, Gather, ImageSize, Integrator, Model, Physical,
-    Run, Sampling, Settings, SettingsError, Strategy, TomlFault, ToneMappingKind, VplPlacement, overlay, value_at,
+    Run, Sampling, Scope, Settings, SettingsError, Strategy, TomlFault, ToneMappingKind, VplPlacement, keys_of,
+    overlay, value_at, value_in,
 };
 pub use stations::{PerStation, Station, Stations};
 pub use stats::{PartTime, PassTime, Rays, StationDevice, Stats, TreeVisits, VplWork};
@@ -46,18 +49,17 @@ pub use vpl_csv::{VplCsvError, vpls_from_csv, vpls_to_csv};
 use cpu::CpuDevice;
 use lightcuts_world::World;
 
-/// What a render is given besides its settings; none of it changes what the settings mean.
+/// Options of a render that are not part of its settings.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// VPLs to use instead of placing some.
+    /// VPLs to use instead of placing new ones.
     pub vpls: Option<Vec<Vpl>>,
     /// Whether SIMD instructions are used.
     pub simd: Simd,
 }
 
-/// Renders a world in the thesis' model of light on the threads of the current rayon pool. Fails only if a parameter is out of
-/// range. A monitor that
-/// cancels gets what there is, with `stats.complete` false.
+/// Renders a world in the thesis' model of light on the threads of the current rayon pool. Fails only if a parameter is
+/// out of range. If the monitor cancels, the partial picture is returned, with `stats.complete` false.
 pub fn render(
     world: &World,
     settings: &Settings,
@@ -68,8 +70,8 @@ pub fn render(
     render_on(world, settings, options, &Stations::all(&cpu), monitor)
 }
 
-/// [`render`] with each station on a device. What a device does not return is rendered by the CPU, so that the picture is
-/// whole; the monitor is told of it.
+/// [`render`] with each station on a device. If a device fails, the CPU does its work, so that the picture is complete;
+/// the monitor gets a note.
 pub fn render_on(
     world: &World,
     settings: &Settings,

@@ -65,8 +65,8 @@ impl LightTree {
         }
     }
 
-    /// The tree of nodes that another device has built over VPLs in order of placement. Panics if the tree's order names
-    /// a VPL that is not there.
+    /// The tree of nodes that another device has built over VPLs in order of placement. Panics if the tree's order
+    /// names a VPL that is not there.
     pub fn from_packed(vpls: &[Vpl], packed: PackedTree) -> Self {
         let mut tree = Self::empty(packed.order.len());
         packed.order.chunks(LANES).for_each(|block| tree.push_block(vpls, block));
@@ -191,8 +191,8 @@ fn widen(halves: &[Half]) -> Vec<LightNode> {
     nodes
 }
 
-/// Size of the ranges that a range of VPLs is made of: the largest power of eight below its length, at least a block. So
-/// nodes are full, but for the last of each level.
+/// Size of the ranges that a range of VPLs is made of: the largest power of eight below its length, at least a block.
+/// So nodes are full, but for the last of each level.
 fn unit(vpls: usize) -> usize {
     let mut unit = LANES;
     while unit * LANES < vpls {

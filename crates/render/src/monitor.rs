@@ -1,9 +1,9 @@
-//! Watching a render and breaking it off.
+//! Progress and cancellation of a render.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Told how far a render is; asked whether to go on. Called from the rendering thread between and from worker threads
-/// during batches of tiles.
+/// Receives the progress of a render and may cancel it. Called from the rendering thread between batches of tiles, and
+/// from worker threads during them.
 pub trait Monitor: Sync {
     /// A stage begins with this many steps.
     fn begin(&self, _stage: Stage, _steps: u64) {}
@@ -11,9 +11,9 @@ pub trait Monitor: Sync {
     fn advance(&self) {}
     /// The current stage is done.
     fn end(&self) {}
-    /// Something that a person should know: a device did not return a result, and what is done about it.
+    /// A note for the user: a device failed, and how the render continues.
     fn note(&self, _text: &str) {}
-    /// Whether to stop; the picture then holds what there is.
+    /// Return true to cancel; the partial picture is kept.
     fn cancelled(&self) -> bool {
         false
     }
@@ -50,42 +50,42 @@ impl Stage {
     }
 }
 
-/// Passes on what a device tells, though it may tell a part twice: steps that it did before a fault are not told again.
-pub(crate) struct Retold<'a> {
+/// Deduplicates progress when work is retried: steps that were done before a fault are not reported again.
+pub(crate) struct RetryMonitor<'a> {
     monitor: &'a dyn Monitor,
     /// Steps done in the attempts that count.
     done: AtomicU64,
     /// Steps done before the current attempt.
     start: u64,
-    /// Steps told before the current attempt, fruitless ones included.
-    told: u64,
+    /// Steps reported before the current attempt, failed ones included.
+    reported: u64,
 }
 
-impl<'a> Retold<'a> {
+impl<'a> RetryMonitor<'a> {
     pub(crate) fn new(monitor: &'a dyn Monitor) -> Self {
-        Self { monitor, done: AtomicU64::new(0), start: 0, told: 0 }
+        Self { monitor, done: AtomicU64::new(0), start: 0, reported: 0 }
     }
 
-    /// From here on steps may have to be done again.
+    /// The steps from here on may have to be repeated.
     pub(crate) fn begin_attempt(&mut self) {
         self.start = *self.done.get_mut();
     }
 
-    /// The attempt was fruitless.
+    /// The attempt failed.
     pub(crate) fn rewind(&mut self) {
         let done = self.done.get_mut();
-        self.told = self.told.max(*done);
+        self.reported = self.reported.max(*done);
         *done = self.start;
     }
 }
 
-impl Monitor for Retold<'_> {
+impl Monitor for RetryMonitor<'_> {
     fn begin(&self, stage: Stage, steps: u64) {
         self.monitor.begin(stage, steps);
     }
 
     fn advance(&self) {
-        if self.done.fetch_add(1, Ordering::Relaxed) >= self.told {
+        if self.done.fetch_add(1, Ordering::Relaxed) >= self.reported {
             self.monitor.advance();
         }
     }

@@ -8,7 +8,7 @@ use lightcuts_kernel::ray::Ray;
 use lightcuts_kernel::rng::random4;
 use lightcuts_kernel::sampling::sample_cosine_cone;
 
-/// Largest number of slots of a ray tree that random numbers tell apart.
+/// Largest number of slots of a ray tree that have random numbers of their own.
 pub const SLOTS: u32 = 1 << 12;
 
 /// Parameters made ready for use.

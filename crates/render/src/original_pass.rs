@@ -1,7 +1,7 @@
 //! The first pass with the original's random numbers: one sequence, row by row.
 //!
-//! Each row's shifts depend on the number of hits before it. So they are found beforehand, by following rays without any light; the
-//! pass itself is then free to render many rows at once.
+//! Each row's shifts depend on the number of hits before it. So they are found beforehand, by following rays without
+//! any light; the pass itself is then free to render many rows at once.
 
 use crate::Vpl;
 use crate::device::{Lighting, Placement, Shifts, Wants};

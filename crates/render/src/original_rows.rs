@@ -1,7 +1,7 @@
-//! The original's first pass needs its rows one after the other: where a row's draws begin depends on the hits before it. Twin of the
-//! GPU's `rows`.
+//! The original's first pass needs its rows one after the other: where a row's draws begin depends on the hits before
+//! it. Twin of the GPU's `rows`.
 
-use crate::cpu::{Tracer, Walls};
+use crate::cpu::{HalfSpaces, Tracer};
 use crate::device::View;
 use crate::original::OriginalDraws;
 use crate::ray_tree::RayTree;
@@ -14,8 +14,8 @@ use lightcuts_world::bvh::LANES;
 /// The shifts of all pixels, bottom row first.
 pub(crate) fn original_shifts(view: &View<'_>, tracer: Tracer<'_>) -> Vec<[f32; 2]> {
     let (width, height) = (view.camera.width, view.camera.height);
-    let walls = Walls::default();
-    let mut shader = Shader::new(view.world, tracer, None, &walls);
+    let half_spaces = HalfSpaces::default();
+    let mut shader = Shader::new(view.world, tracer, None, &half_spaces);
     let mut tree = RayTree::new(view.max_depth);
     let mut draws = OriginalDraws::new();
     let mut all = Vec::with_capacity((width * height) as usize);

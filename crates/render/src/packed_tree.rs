@@ -9,9 +9,9 @@ use lightcuts_kernel::packed_tree::{
 
 /// A perfect binary tree over blocks of VPLs in Morton order.
 ///
-/// `leaves` is the number of blocks rounded up to a power of two, at least 1. Node 1 is the root, the children of node i
-/// are 2i and 2i + 1, and leaf j, node `leaves` + j, holds the block of VPLs `order[8 j .. 8 j + 8]`. Leaves past the last
-/// block are empty.
+/// `leaves` is the number of blocks rounded up to a power of two, at least 1. Node 1 is the root, the children of node
+/// i are 2i and 2i + 1, and leaf j, node `leaves` + j, holds the block of VPLs `order[8 j .. 8 j + 8]`. Leaves past the
+/// last block are empty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PackedTree {
     /// 2 * `leaves` nodes; the first is unused and zero.

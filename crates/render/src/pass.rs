@@ -1,6 +1,6 @@
 //! One tile of a pass over the picture on the CPU: camera rays of every pixel.
 
-use crate::cpu::{Tracer, Walls};
+use crate::cpu::{HalfSpaces, Tracer};
 use crate::device::{Pass, Placement, Seen, Shifts, TileResult, Wants};
 use crate::film::{Film, Tile};
 use crate::original::effective_probability;
@@ -24,8 +24,8 @@ fn order(i: u32, row: u32) -> (u32, u32, u32) {
 }
 
 impl Placement {
-    /// `samples` camera rays are to place as many VPLs, on average, as the thesis' picture of one per pixel: VPLs are not
-    /// weighted, so their number decides how bright the second pass is.
+    /// `samples` camera rays are to place as many VPLs, on average, as the thesis' picture of one per pixel: VPLs are
+    /// not weighted, so their number decides how bright the second pass is.
     pub fn new(settings: &VplPlacement, samples: u64, stream: u32) -> Self {
         let thesis_samples = u64::from(THESIS_SIZE) * u64::from(THESIS_SIZE);
         Self {
@@ -55,11 +55,11 @@ impl Placement {
 
 impl Pass<'_> {
     /// Renders one tile.
-    pub(crate) fn render_tile(&self, tracer: Tracer<'_>, walls: &Walls, tile: &Tile) -> TileResult {
+    pub(crate) fn render_tile(&self, tracer: Tracer<'_>, half_spaces: &HalfSpaces, tile: &Tile) -> TileResult {
         let area = (tile.width * tile.height) as usize;
         let mut worker = Worker {
             pass: self,
-            shader: Shader::new(self.view.world, tracer, Some(self.lighting), walls),
+            shader: Shader::new(self.view.world, tracer, Some(self.lighting), half_spaces),
             tree: RayTree::new(self.view.max_depth),
             shifts: Vec::new(),
             samples: Vec::new(),
@@ -106,8 +106,8 @@ struct Sample {
 }
 
 impl Worker<'_> {
-    /// Renders a few rows of pixels: camera rays look together with their neighbours, and each goes on alone, in the order of the
-    /// pixels.
+    /// Renders a few rows of pixels: camera rays are traced together with their neighbours, and each continues alone,
+    /// in the order of the pixels.
     fn render_rows(&mut self, pixels: &[(u32, u32)]) {
         self.samples.clear();
         self.rays.clear();
@@ -121,12 +121,12 @@ impl Worker<'_> {
             let (i, j) = pixels[samples[k].place];
             order(i, j - bottom)
         });
-        self.shader.look(&self.rays, &looking);
+        self.shader.trace_primary(&self.rays, &looking);
         let seen = self.result.seen.len();
         self.result.seen.resize(seen + pixels.len(), Seen::default());
         for (k, sample) in samples.iter().enumerate() {
             let (i, j) = pixels[sample.place];
-            self.shader.begin(k, sample.number);
+            self.shader.make_current(k, sample.number);
             let color = self.tree.trace(&mut self.shader, self.rays[k]);
             self.result.film.add(i, j, sample.shift, color);
             self.report(seen + sample.place);

@@ -1,8 +1,8 @@
-//! Photons that mirrors and glass throw onto matt surfaces, and their density there.
+//! Photons that mirrors and glass throw onto diffuse surfaces, and their density there.
 //!
-//! The thesis program means to do this but stores nothing: it forgets the target after the first bounce. Here photons go
-//! through a regular grid on the disk of each target's bounding sphere seen from each light, must meet the target first,
-//! then follow mirrored and refracted rays to the first surface bright enough to show them.
+//! The thesis program means to do this but stores nothing: it forgets the target after the first bounce. Here photons
+//! go through a regular grid on the disk of each target's bounding sphere seen from each light, must meet the target
+//! first, then follow mirrored and refracted rays to the first surface bright enough to show them.
 
 use crate::cpu::Tracer;
 use crate::monitor::Monitor;

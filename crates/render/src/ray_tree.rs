@@ -139,8 +139,8 @@ impl RayTree {
 
     /// Number of hits in the tree of a camera ray.
     pub(crate) fn hit_count(&mut self, shader: &mut Shader<'_>, camera_ray: Ray) -> usize {
-        shader.look(&[camera_ray], &[0]);
-        shader.begin(0, (0, 0));
+        shader.trace_primary(&[camera_ray], &[0]);
+        shader.make_current(0, (0, 0));
         self.trace(shader, camera_ray);
         self.active.iter().filter(|&&k| self.slots[k as usize].found.is_some()).count()
     }

@@ -31,7 +31,7 @@ pub struct Rendering {
     pub lights_selected: Plane<f32>,
     /// The VPLs, in order of placement.
     pub vpls: Vec<Vpl>,
-    /// Counts and times. `stats.complete` tells whether the render ran to its end.
+    /// Counts and times. `stats.complete` is true if the render ran to its end.
     pub stats: Stats,
 }
 
@@ -66,8 +66,8 @@ impl Rendering {
     }
 }
 
-/// Both passes' films and what the camera rays saw, summed over samples, while they grow. Planes have row 0 at the top, as they are
-/// to leave.
+/// Both passes' films and what the camera rays saw, summed over samples, while they grow. Planes have row 0 at the top,
+/// as they are to leave.
 pub(crate) struct Canvas {
     width: usize,
     height: usize,

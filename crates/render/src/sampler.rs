@@ -14,7 +14,7 @@ const CANDIDATES_PER_POINT: usize = 4;
 pub struct Sampler {
     kind: SamplerKind,
     stream: u32,
-    /// Index of the batch's first sample; tells batches apart.
+    /// Index of the batch's first sample; distinguishes batches.
     first: u32,
     count: u32,
     /// Best-candidate patterns, `count` points each.

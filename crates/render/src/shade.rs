@@ -1,7 +1,8 @@
 //! Light at a hit: the scene's lights in the first pass, VPLs in the second.
 
 use crate::cpu::{
-    Blocks, Candidates, Gathered, Receiver, Tracer, Walls, evaluate, evaluate_together, select, select_exhaustively,
+    Blocks, Candidates, Gathered, HalfSpaces, Receiver, Tracer, evaluate, evaluate_together, select,
+    select_exhaustively,
 };
 use crate::device::{Lighting, VplLighting};
 use crate::settings::Strategy;
@@ -18,10 +19,11 @@ use lightcuts_world::World;
 use lightcuts_world::bvh::LANES;
 use std::ops::Range;
 
-/// Camera rays that look together: so many as shadow rays to one VPL go together.
+/// Camera rays that are traced and lit together: as many as there are shadow rays to one VPL in a bundle.
 pub(crate) const TOGETHER: usize = 32;
 
-/// Neighbours choose VPLs together, if then so many at most are to be tested at each of them, or one for so many that need no test.
+/// Neighbours choose VPLs together if at most this many are left to be tested at each of them, or one for each
+/// [`CERTAIN_PER_TESTED`] that need no test.
 const MOST_TESTED: u64 = 256;
 const CERTAIN_PER_TESTED: u64 = 4;
 
@@ -34,32 +36,37 @@ pub(crate) struct Found {
     pub(crate) epsilon: f32,
 }
 
-/// Shades hits and counts what that takes. One per worker and tile.
+/// Shades hits and counts the work. One per worker and tile.
 pub(crate) struct Shader<'a> {
     world: &'a World,
     tracer: Tracer<'a>,
-    /// None where rays are only to be followed.
+    /// None if rays are only traced.
     lighting: Option<Lighting<'a>>,
-    walls: &'a Walls,
+    half_spaces: &'a HalfSpaces,
     /// Place of the camera ray in the run, for random numbers: pixel and sample.
     pub(crate) place: (u32, u32),
     pub(crate) rays: Rays,
     pub(crate) visits: TreeVisits,
     /// VPLs that lit each shaded hit of the current ray tree, in order of shading.
     pub(crate) selected: Vec<u32>,
-    /// VPLs of the current hit; those of every hit where all are gathered.
+    /// VPLs of the current hit; those of every hit if all are gathered.
     candidates: Vec<Candidates>,
-    /// The same of hits that are gathered together, one after the other.
+    /// The same for hits that are gathered together, one after the other.
     candidates_together: Vec<Candidates>,
-    /// What is known of camera rays before they are traced: what they hit, and the VPLs' light there.
+    /// Results of [`Shader::trace_primary`]: what camera rays hit, and the VPLs' light there.
     firsts: Vec<Option<Found>>,
     gathered: Vec<Option<(Gathered, TreeVisits)>>,
-    /// The number of the current one.
+    /// The index of the current camera ray.
     current: usize,
 }
 
 impl<'a> Shader<'a> {
-    pub(crate) fn new(world: &'a World, tracer: Tracer<'a>, lighting: Option<Lighting<'a>>, walls: &'a Walls) -> Self {
+    pub(crate) fn new(
+        world: &'a World,
+        tracer: Tracer<'a>,
+        lighting: Option<Lighting<'a>>,
+        half_spaces: &'a HalfSpaces,
+    ) -> Self {
         let candidates = match lighting {
             Some(Lighting::Vpls(VplLighting { tree, strategy: Strategy::All, .. })) => tree.every_block(true).collect(),
             _ => Vec::new(),
@@ -68,7 +75,7 @@ impl<'a> Shader<'a> {
             world,
             tracer,
             lighting,
-            walls,
+            half_spaces,
             place: (0, 0),
             rays: Rays::default(),
             visits: TreeVisits::default(),
@@ -110,8 +117,9 @@ impl<'a> Shader<'a> {
         &self.world.materials[found.surface.material as usize]
     }
 
-    /// Finds what camera rays hit, and the VPLs' light there. Those that follow each other in `order` are neighbours.
-    pub(crate) fn look(&mut self, rays: &[Ray], order: &[usize]) {
+    /// Traces camera rays, and gathers the VPLs' light at their hits. Rays that follow each other in `order` are
+    /// neighbours.
+    pub(crate) fn trace_primary(&mut self, rays: &[Ray], order: &[usize]) {
         self.firsts.resize(rays.len(), None);
         for eight in order.chunks(LANES) {
             let hits = self.tracer.closest8(&std::array::from_fn(|lane| rays[eight[lane.min(eight.len() - 1)]]));
@@ -126,8 +134,8 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// Goes on to a camera ray of those that have looked.
-    pub(crate) fn begin(&mut self, current: usize, place: (u32, u32)) {
+    /// Makes a traced camera ray the current one.
+    pub(crate) fn make_current(&mut self, current: usize, place: (u32, u32)) {
         (self.current, self.place) = (current, place);
         self.selected.clear();
     }
@@ -146,13 +154,14 @@ impl<'a> Shader<'a> {
             _ => &self.candidates_together[own.clone()],
         };
         let lists: Vec<&[Candidates]> = choices.iter().map(list).collect();
-        let gathered = evaluate_together(&self.tracer, &blocks(vpls, self.walls), &lists, threshold(vpls), &receivers);
+        let gathered =
+            evaluate_together(&self.tracer, &blocks(vpls, self.half_spaces), &lists, threshold(vpls), &receivers);
         for ((place, gathered), (_, visits)) in places.into_iter().zip(gathered).zip(choices) {
             self.gathered[place] = Some((gathered, visits));
         }
     }
 
-    /// The colour that a hit shows by itself: E times the light that arrives, plus glow.
+    /// The local colour of a hit: E times the incident light, plus glow.
     pub(crate) fn local(&mut self, slot: u32, ray: &Ray, found: &Found) -> Vec3 {
         let Material { local, glow, .. } = *self.material(found);
         match self.lighting {
@@ -207,7 +216,10 @@ impl<'a> Shader<'a> {
             }
             let visits = choose(vpls, &self.tracer, (surface.point, surface.point), &mut self.candidates);
             let receiver = self.receiver(found);
-            (evaluate(&self.tracer, &blocks(vpls, self.walls), &self.candidates, threshold(vpls), &receiver), visits)
+            (
+                evaluate(&self.tracer, &blocks(vpls, self.half_spaces), &self.candidates, threshold(vpls), &receiver),
+                visits,
+            )
         });
         self.visits.add(&TreeVisits { shaded_hits: 1, selected: u64::from(gathered.chosen), ..visits });
         self.selected.push(gathered.chosen);
@@ -222,16 +234,16 @@ impl<'a> Shader<'a> {
     }
 }
 
-fn blocks<'a>(vpls: &VplLighting<'a>, walls: &'a Walls) -> Blocks<'a> {
-    Blocks { vpls: &vpls.tree.blocks, walls }
+fn blocks<'a>(vpls: &VplLighting<'a>, half_spaces: &'a HalfSpaces) -> Blocks<'a> {
+    Blocks { vpls: &vpls.tree.blocks, half_spaces }
 }
 
-/// The relevance that a VPL must reach; `None` where all count.
+/// The relevance that a VPL must reach; `None` if all are chosen.
 fn threshold(vpls: &VplLighting<'_>) -> Option<f32> {
     (vpls.strategy != Strategy::All).then_some(vpls.threshold)
 }
 
-/// Appends the VPLs that may light points of a box; none where all do.
+/// Appends the VPLs that may light points of a box; nothing if all are chosen.
 fn choose(
     vpls: &VplLighting<'_>,
     tracer: &Tracer<'_>,
@@ -240,7 +252,7 @@ fn choose(
 ) -> TreeVisits {
     match vpls.strategy {
         Strategy::All => TreeVisits::default(),
-        // `stochastic` is of the physical model; settings with it are not rendered here.
+        // `stochastic` and `auto` belong to the physical model; settings with them are not rendered here.
         Strategy::Lightcuts | Strategy::Stochastic | Strategy::Auto => {
             select(vpls.tree, tracer.avx2, points, vpls.threshold, candidates)
         }
@@ -248,8 +260,8 @@ fn choose(
     }
 }
 
-/// The same for neighbours: of each, where among the candidates its own are, and what that took. They go down the tree together, and
-/// alone only if that leaves too many VPLs to be tested.
+/// The same for neighbours: for each, the range of its candidates, and the work. They descend the tree together, and
+/// separately only if that leaves too many VPLs to be tested.
 fn choose_together(
     vpls: &VplLighting<'_>,
     tracer: &Tracer<'_>,

@@ -40,7 +40,7 @@ impl FromStr for Station {
     fn from_str(text: &str) -> Result<Self, String> {
         Self::ALL.into_iter().find(|station| station.name() == text).ok_or_else(|| {
             let names = Self::ALL.map(Self::name).join(", ");
-            format!("`{text}` is no station; expected some of {names}")
+            format!("`{text}` is not a station; expected one of {names}")
         })
     }
 }

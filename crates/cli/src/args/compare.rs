@@ -13,8 +13,8 @@ pub(super) const AFTER_HELP: &str = "\
 Exit codes:
     0  the pictures are the same: no condition holds
     1  they differ: at least one condition holds
-    2  trouble, nothing is said about the pictures: bad usage, a picture that cannot be read,
-       sizes or channels that do not match, a map that cannot be written
+    2  error, no verdict: bad usage, a picture that cannot be read, sizes or channels that do not
+       match, a map that cannot be written
   130  interrupted (SIGINT)
 
 Conditions without --fail:
@@ -30,10 +30,10 @@ Examples:
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct CompareArgs {
-    /// The picture that is right: EXR, PNG, PFM or Radiance HDR, told by content.
+    /// The reference picture: EXR, PNG, PFM or Radiance HDR, detected by content.
     #[arg(value_name = "REFERENCE", value_hint = ValueHint::FilePath)]
     pub(crate) reference: PathBuf,
-    /// The picture to judge, of the same size and channels.
+    /// The picture to test, with the same size and channels.
     #[arg(value_name = "TEST", value_hint = ValueHint::FilePath)]
     pub(crate) test: PathBuf,
     #[command(flatten)]
@@ -48,19 +48,19 @@ pub(crate) struct CompareArgs {
     pub(crate) output: CompareOutputArgs,
 }
 
-/// What is measured and what counts as different.
+/// Metrics, and what counts as different.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Judging")]
 pub(crate) struct JudgingArgs {
     /// Metrics, separated by commas [default: all]
     ///
-    /// Those that a condition names are measured too, and non-finite pixels always.
+    /// Metrics named in a condition are computed too, and non-finite pixels are always counted.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = metric_parser())]
     pub(crate) metrics: Vec<Metric>,
     /// The pictures differ if this holds, such as `flip>0.05`; may be repeated.
     ///
-    /// A metric, one of > >= < <= == !=, and a number. A metric without a value, or one that is not a number, fails its
-    /// condition. Quote conditions, or the shell takes > for itself.
+    /// A metric, one of > >= < <= == !=, and a number. A metric without a value, or one that is NaN, counts as
+    /// different. Quote conditions, or the shell interprets the >.
     #[arg(long = "fail", value_name = "CONDITION")]
     pub(crate) conditions: Vec<String>,
 }
@@ -69,16 +69,16 @@ pub(crate) struct JudgingArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Input")]
 pub(crate) struct InputArgs {
-    /// How light is shown, and how code values of a PNG become light.
+    /// Transfer function: how light is displayed, and how code values of a PNG become light.
     ///
-    /// PNGs that `lightcuts render` wrote are `linear` for the thesis' model of light, as the thesis shows its pictures, and
-    /// `srgb` for the physical one, unless they were rendered with --transfer.
+    /// PNGs that `lightcuts render` writes are `linear` in the thesis' model and `srgb` in the physical model, unless
+    /// they were rendered with another --transfer.
     #[arg(long, value_enum, default_value_t = TransferChoice::Srgb)]
     pub(crate) transfer: TransferChoice,
-    /// Layer of EXR files instead of the picture itself, such as `albedo`; see `lightcuts info`.
+    /// Compare this layer of EXR files instead of the picture itself, such as `albedo`; see `lightcuts info`.
     #[arg(long, value_name = "NAME")]
     pub(crate) layer: Option<String>,
-    /// Compare the colours where only one of the pictures has an alpha. Alpha itself is never compared.
+    /// Compare the colours even if only one of the pictures has an alpha channel. Alpha itself is never compared.
     #[arg(long)]
     pub(crate) ignore_alpha: bool,
     /// Compare the pixels of EXR files whose data windows lie elsewhere in their display windows.
@@ -86,35 +86,35 @@ pub(crate) struct InputArgs {
     pub(crate) ignore_windows: bool,
 }
 
-/// The parameters of Perceptual Image Diff, as its program has them.
+/// The parameters of Perceptual Image Diff, as in the original program.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Perceptual Image Diff")]
 pub(crate) struct PdiffArgs {
-    /// Angle that the picture's width covers in the viewer's eye.
+    /// Horizontal field of view that the picture covers.
     #[arg(long, value_name = "DEGREES", default_value_t = 45.0)]
     pub(crate) fov: f32,
-    /// Power that makes light of code values.
+    /// Exponent from code values to light.
     #[arg(long, value_name = "X", default_value_t = 2.2)]
     pub(crate) gamma: f32,
-    /// Luminance of the display's white, in cd/m^2.
+    /// Peak luminance of the display, in cd/m^2.
     #[arg(long, value_name = "X", default_value_t = 100.0)]
     pub(crate) luminance: f32,
-    /// Pictures pass where fewer pixels than this differ visibly.
+    /// Pictures pass if fewer pixels than this differ visibly.
     #[arg(long, value_name = "PIXELS", default_value_t = 100)]
     pub(crate) threshold: usize,
-    /// Compare luminance alone, not colour.
+    /// Compare only luminance, not colour.
     #[arg(long)]
     pub(crate) luminance_only: bool,
-    /// Weight of differences in colour.
+    /// Weight of colour differences.
     #[arg(long, value_name = "X", default_value_t = 1.0)]
     pub(crate) color_factor: f32,
-    /// Halve both pictures this often first.
+    /// Halve the resolution of both pictures this many times first.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) downsample: u32,
-    /// Order in which the channels are taken.
+    /// Order in which the channels are read.
     ///
-    /// The published program takes red for blue: its figures, those for the thesis' pictures among them, are those
-    /// of `bgr`. `rgb` is what the paper describes.
+    /// The published program swaps red and blue: its figures, including those for the thesis' pictures, are those of
+    /// `bgr`. `rgb` is what the paper describes.
     #[arg(long, value_enum, default_value_t = ChannelOrder::Bgr)]
     pub(crate) pdiff_channels: ChannelOrder,
 }
@@ -123,7 +123,7 @@ pub(crate) struct PdiffArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "FLIP")]
 pub(crate) struct FlipArgs {
-    /// Pixels that one degree of the visual field covers [default: 67.02, 3840 pixels on 0.7 m seen from 0.7 m]
+    /// Pixels per degree of visual angle [default: 67.02, 3840 pixels on 0.7 m seen from 0.7 m]
     #[arg(long = "ppd", value_name = "X")]
     pub(crate) pixels_per_degree: Option<f32>,
     /// Exposures of HDR-FLIP: `auto`, from the reference, or START,STOP,COUNT, in stops.
@@ -131,20 +131,20 @@ pub(crate) struct FlipArgs {
     pub(crate) exposures: Exposures,
 }
 
-/// What is told and written.
+/// What is printed and written.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct CompareOutputArgs {
-    /// Picture of the differences to write, .png; may be repeated.
+    /// Difference map to write, .png; may be repeated.
     ///
-    /// [KIND=]FILE.png with a kind of flip, flip-hdr, pdiff, difference (signed), relmse or absolute. Without a kind, it
-    /// is the file's name without .png if that is a kind, else flip.
+    /// [KIND=]FILE.png; the kinds are flip, flip-hdr, pdiff, difference (signed), relmse and absolute. Without a kind,
+    /// the file name without .png is used if it is one, else flip.
     #[arg(long = "map", value_name = "[KIND=]FILE", value_hint = ValueHint::FilePath)]
     pub(crate) maps: Vec<PathBuf>,
     /// Print one JSON object for machines.
     #[arg(long)]
     pub(crate) json: bool,
-    /// No table and no progress; the exit code tells.
+    /// No table and no progress, only the exit code.
     #[arg(short, long)]
     pub(crate) quiet: bool,
     /// Progress on stderr [default: for large pictures a bar on a terminal, else plain]
@@ -154,7 +154,7 @@ pub(crate) struct CompareOutputArgs {
     pub(crate) threads: ThreadArgs,
 }
 
-/// Transfers as words.
+/// Transfer functions by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TransferChoice {
     /// IEC 61966-2-1, which displays expect
@@ -172,12 +172,12 @@ impl From<TransferChoice> for Transfer {
     }
 }
 
-/// Which channel is taken for red.
+/// Which channel is read as red.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ChannelOrder {
-    /// Blue, as published figures have it
+    /// Blue, as in the published figures
     Bgr,
-    /// Red, as the paper has it
+    /// Red, as in the paper
     Rgb,
 }
 

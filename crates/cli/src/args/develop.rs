@@ -1,9 +1,8 @@
 //! Arguments of `develop`.
 
-use super::ThreadArgs;
 use super::display::{BloomFlags, DisplayFlags};
+use super::{SettingFlags, ThreadArgs};
 use clap::{Args, ValueHint};
-use serde::Serialize;
 use std::path::PathBuf;
 
 /// What the help text of `develop` ends with.
@@ -35,12 +34,18 @@ pub(crate) struct DevelopArgs {
     pub(crate) threads: ThreadArgs,
 }
 
-/// The settings that were given on the command line, as `SettingFlags` has them.
-#[derive(Debug, Default, Args, Serialize)]
-#[serde(rename_all = "kebab-case")]
+/// The settings that were given on the command line: some of `SettingFlags`.
+#[derive(Debug, Default, Args)]
 pub(crate) struct DevelopFlags {
     #[command(flatten)]
     bloom: BloomFlags,
     #[command(flatten)]
     display: DisplayFlags,
+}
+
+impl DevelopFlags {
+    /// The same among all settings.
+    pub(crate) fn settings(&self) -> SettingFlags {
+        SettingFlags { bloom: self.bloom.clone(), display: self.display.clone(), ..SettingFlags::default() }
+    }
 }

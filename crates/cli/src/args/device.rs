@@ -11,40 +11,43 @@ const MAX_BUDGET_MS: i64 = 1000;
 
 /// What the help of `devices` ends with.
 pub(super) const AFTER_HELP: &str = "\
-`lightcuts render --device DEVICE` takes
+Values of `lightcuts render --device DEVICE`:
 
   auto  a graphics card if there is one, else the CPU; the default
   cpu   the CPU, with all cores and their vector instructions
-  gpu   the best adapter, even if it is a software driver: to try the GPU's programs without a card
-  NAME  the first adapter whose name contains this, in any case of letters
+  gpu   the best adapter, even if it is a software driver: to try the GPU code without a card
+  NAME  the first adapter whose name contains NAME, ignoring case
 
-and `--station-device gather=gpu` one station of the render elsewhere than the others.
+`--station-device gather=gpu` runs one station of the render on another device.
+GPUs render the thesis' model; the physical model runs on the CPU.
 
-A graphics card is seen if its driver offers Vulkan (Linux, Windows), Metal (macOS) or DX12 (Windows). If yours is not
-listed, install its vendor's driver and Vulkan's loader; on Debian and Ubuntu the packages libvulkan1 and
-mesa-vulkan-drivers, which bring a software driver too.
+A graphics card is found if its driver supports Vulkan (Linux, Windows), Metal (macOS) or DX12 (Windows). If yours is not
+listed, install its vendor's driver and the Vulkan loader; on Debian and Ubuntu, the packages libvulkan1 and
+mesa-vulkan-drivers, which include a software driver.
 
-A software driver computes on the processor. It is there for tests, and slower than the CPU renderer itself.
+A software driver runs on the processor. It is meant for tests, and is slower than the CPU renderer itself.
 
-This command always ends with 0: the CPU is always there.";
+The exit code is always 0: there is always a CPU.";
 
 /// Which device renders.
 #[derive(Debug, Args)]
 pub(crate) struct DeviceArgs {
-    /// What renders: `auto` is a graphics card if there is one, else the CPU; `cpu`; `gpu`, the best adapter; or NAME, a part
-    /// of an adapter's name.
+    /// Device to render on: `auto`, a graphics card if there is one, else the CPU; `cpu`; `gpu`, the best adapter; or
+    /// part of an adapter's name.
     ///
-    /// `lightcuts devices` lists them. One device gives the same picture every time, bit for bit; pictures of two devices
-    /// differ by rounding alone. Counts and random numbers are the same on all, with --reproduce too.
+    /// `lightcuts devices` lists them. GPUs render the thesis' model; the physical model runs on the CPU. A device
+    /// gives the same picture every time, bit for bit; pictures of two devices differ only by rounding. Counts and
+    /// random numbers are the same on all devices, also with --reproduce.
     #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = choice)]
     device: DeviceChoice,
-    /// Another device for one station of the render, such as `gather=gpu`; may be repeated, or separated by commas.
+    /// Another device for one station of the render, such as `gather=gpu`; may be repeated, or separated by commas
     ///
-    /// The stations are `place` (the first pass), `photons` (of caustics), `tree` (over the VPLs), `gather` (the second pass)
-    /// and `develop` (bloom and tone mapping). A result of one device is used on another, so this isolates a fault.
-    #[arg(long, value_name = "STATION=DEVICE", value_delimiter = ',')]
+    /// The stations are `place` (the first pass), `photons` (of caustics), `tree` (over the VPLs), `gather` (the second
+    /// pass) and `develop` (bloom and tone mapping). The result of one device is passed to the next, so this isolates a
+    /// fault.
+    #[arg(id = "station-device", long = "station-device", value_name = "STATION=DEVICE", value_delimiter = ',')]
     station_device: Vec<StationDevice>,
-    /// Milliseconds that a piece of a GPU's work may take: the fewer, the smoother a desktop on the same GPU.
+    /// Longest single piece of GPU work, in milliseconds: the shorter, the smoother a desktop on the same GPU.
     #[arg(long, value_name = "MS", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=MAX_BUDGET_MS))]
     gpu_budget: u16,
 }
@@ -57,7 +60,7 @@ pub(crate) struct DevicesArgs {
     pub(crate) json: bool,
 }
 
-/// A station with the device that it takes.
+/// A station with the device that runs it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct StationDevice {
     station: Station,
@@ -65,11 +68,16 @@ struct StationDevice {
 }
 
 impl DeviceArgs {
-    /// What each station asks for; of two devices for one station the last counts.
+    /// The device requested for each station; of two for one station the last counts.
     pub(crate) fn wanted(&self) -> PerStation<DeviceChoice> {
         let wanted = PerStation::all(self.device.clone());
         let own = self.station_device.iter().cloned();
         own.fold(wanted, |wanted, StationDevice { station, device }| wanted.with(station, device))
+    }
+
+    /// Whether a station was given a device of its own.
+    pub(super) fn has_stations(&self) -> bool {
+        !self.station_device.is_empty()
     }
 
     /// How a GPU is used.
@@ -89,7 +97,7 @@ impl FromStr for StationDevice {
 
 fn choice(text: &str) -> Result<DeviceChoice, String> {
     if text.trim().is_empty() {
-        return Err("expected auto, cpu, gpu or a part of an adapter's name".to_owned());
+        return Err("expected auto, cpu, gpu or part of an adapter's name".to_owned());
     }
     let Ok(choice) = text.parse();
     Ok(choice)
@@ -106,7 +114,7 @@ mod tests {
         let card = DeviceChoice::Named("My Card".to_owned());
         assert_eq!(parsed("tree=My Card"), Ok(StationDevice { station: Station::Tree, device: card }));
         for (text, expected) in
-            [("gpu", "STATION=DEVICE"), ("pass=gpu", "expected some of place, photons"), ("tree=", "auto")]
+            [("gpu", "STATION=DEVICE"), ("pass=gpu", "expected one of place, photons"), ("tree=", "auto")]
         {
             assert!(parsed(text).unwrap_err().contains(expected), "{text}");
         }

@@ -7,18 +7,18 @@ use std::path::PathBuf;
 /// Arguments of `experiment`.
 #[derive(Debug, Args)]
 pub(crate) struct ExperimentArgs {
-    /// The experiment file, TOML: scenes, configurations, and what a report shows of them.
+    /// The experiment file (TOML): scenes of the thesis' model, configurations, and the sections of a report.
     #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
-    /// Folder for results and pictures, made if absent [default: out/NAME]
+    /// Folder for results and pictures, created if absent [default: out/NAME]
     ///
-    /// Renders that are finished there are not rendered again.
+    /// Renders that are already finished there are not repeated.
     #[arg(short = 'o', long = "output", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) directory: Option<PathBuf>,
-    /// Render only what has this name: a scene, a configuration or a point; may be repeated, `*` stands for anything
+    /// Render only what has this name: a scene, a configuration or a point; may be repeated, `*` matches anything
     ///
     /// Names of one kind add up: `--only venus --only galleon --only 'cpu*'` renders two scenes, in each the
-    /// configurations that begin with `cpu`. References that are needed for comparison are rendered too.
+    /// configurations whose names begin with `cpu`. References that are needed for comparison are rendered too.
     #[arg(long, value_name = "NAME")]
     pub(crate) only: Vec<String>,
     #[command(flatten)]

@@ -13,21 +13,21 @@ pub(crate) struct HeatmapArgs {
     pub(crate) picture: PathBuf,
     /// The layer, or `beauty`; `lightcuts info PICTURE` lists them.
     ///
-    /// Of colours the luminance is shown, of directions and positions the length, of ids the number.
+    /// Colours are shown by their luminance, directions and positions by their length, ids by their number.
     #[arg(value_name = "LAYER")]
     pub(crate) layer: String,
     /// File to write, .png [default: PICTURE-LAYER.png in the current folder]
     #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
-    /// Numbers at both ends of the scale, such as 0..200 [default: 0 to a round number above nearly all values]
+    /// Range of the scale, such as 0..200 [default: 0 to a round number above nearly all values]
     ///
     /// With --log these are logarithms: `--range -6..-2`.
     #[arg(long, value_name = "LOW..HIGH", allow_hyphen_values = true)]
     pub(crate) range: Option<Range>,
-    /// Show the decimal logarithm; values that are not above 0 have the first colour.
+    /// Show the decimal logarithm; values of 0 and below get the first colour.
     #[arg(long)]
     pub(crate) log: bool,
-    /// Do not say what was written.
+    /// Do not print what was written.
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }

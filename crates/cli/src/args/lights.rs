@@ -10,25 +10,25 @@ use serde::Serialize;
 pub(crate) struct VplFlags {
     /// Nominal probability that a hit of the first pass becomes a VPL, 0 to 1 [default: the scene's, else 0.0001]
     ///
-    /// It is that of a picture of 512 x 512 pixels of one sample, and shared out over the camera's rays in others: the
-    /// number of VPLs does not depend on size and samples. The effective one is about 30.5 times as much, as in the
-    /// original: (floor(p 10^6) + 1) / 32768. More VPLs give smoother indirect light and a brighter picture (the thesis
-    /// does not divide by their number): lower --vpl-attenuation in proportion.
-    #[arg(long = "vpl-probability", value_name = "P")]
+    /// It applies to 512 x 512 pixels with one sample each; other pictures divide it among their camera rays, so that
+    /// the number of VPLs does not depend on size and samples. The effective probability is about 30.5 times as high,
+    /// as in the original: (floor(p 10^6) + 1) / 32768. More VPLs give smoother indirect light and a brighter picture
+    /// (the thesis does not divide by their number): lower --vpl-attenuation in proportion.
+    #[arg(id = "vpl.probability", long = "vpl-probability", value_name = "P")]
     probability: Option<f32>,
-    /// Least r + g + b of a hit's colour for it to become a VPL, 0 to 3 [default: the scene's, else 0.7]
+    /// Minimum r + g + b of a hit's colour for it to become a VPL, 0 to 3 [default: the scene's, else 0.7]
     ///
-    /// Lower it where dim surfaces should light others too; there will be more VPLs.
-    #[arg(long = "vpl-min-illumination", value_name = "X")]
+    /// Lower it if dim surfaces should light others too; there will be more VPLs.
+    #[arg(id = "vpl.min-illumination", long = "vpl-min-illumination", value_name = "X")]
     min_illumination: Option<f32>,
     /// Factor on every VPL's light [default: the scene's, else 0.075]
     ///
-    /// The brightness of all indirect light. Halve it when there are twice as many VPLs.
-    #[arg(long = "vpl-attenuation", value_name = "X")]
+    /// It sets the brightness of all indirect light. Halve it if there are twice as many VPLs.
+    #[arg(id = "vpl.attenuation", long = "vpl-attenuation", value_name = "X")]
     attenuation: Option<f32>,
-    /// Make only the first pass: direct light, mirrors and refraction; VPLs are placed, for --write-vpls, but unused
-    /// [default: false]
-    #[arg(long = "no-second-pass", value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    /// Render the first pass only: direct light, mirrors and refraction; VPLs are placed, for --write-vpls, but not
+    /// used [default: false]
+    #[arg(id = "vpl.enabled", long = "no-second-pass", value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     #[serde(serialize_with = "negated")]
     enabled: Option<bool>,
 }
@@ -39,17 +39,17 @@ pub(crate) struct VplFlags {
 pub(crate) struct GatherFlags {
     /// Which VPLs light a point [default: lightcuts]
     ///
-    /// `lightcuts`: those whose relevance reaches --threshold, found through a bounded tree. `lightcuts-exhaustive`: the
-    /// same ones, hence the same picture, found by testing every VPL; the plain version, to compare times with. `all`:
-    /// every VPL, whatever its relevance; the picture to compare with. In the physical model: `lightcuts` (clusters by
-    /// error bound, Walter et al. 2005), `stochastic` (a few VPLs drawn down the tree), `all`, and `auto`, which chooses
-    /// among these in each tile by measurement.
-    #[arg(long = "gather", value_name = "STRATEGY", value_parser = ["all", "lightcuts", "lightcuts-exhaustive", "stochastic", "auto"])]
+    /// In the thesis' model: `lightcuts`, the VPLs whose relevance reaches --threshold, found through a bounded tree;
+    /// `lightcuts-exhaustive`, the same VPLs, and so the same picture, found by testing every VPL, to compare times
+    /// with; `all`, every VPL, the picture to compare with. In the physical model: `lightcuts`, clusters by error bound
+    /// (Walter et al. 2005); `stochastic`, a few VPLs sampled from the tree; `all`; and `auto`, which measures these
+    /// three and chooses among them in each tile.
+    #[arg(id = "gather.strategy", long = "gather", value_name = "STRATEGY", value_parser = ["all", "lightcuts", "lightcuts-exhaustive", "stochastic", "auto"])]
     strategy: Option<String>,
-    /// Least relevance of a chosen VPL; not for `--gather all` [default: the scene's, else 0.000001]
+    /// Minimum relevance of a chosen VPL; not for `--gather all` [default: the scene's, else 0.000001]
     ///
     /// Relevance is intensity x cosine / squared distance, so it depends on the scene's scale. A higher threshold is
-    /// faster and darker; the summary's light ratio tells the share of VPLs that are left. 0 chooses every VPL.
-    #[arg(long, value_name = "X")]
+    /// faster and darker; the summary's light ratio is the share of VPLs that remain. 0 chooses every VPL.
+    #[arg(id = "gather.threshold", long = "threshold", value_name = "X")]
     threshold: Option<f32>,
 }

@@ -8,6 +8,7 @@ mod effects;
 mod experiment;
 mod heatmap;
 mod lights;
+mod model;
 mod physical;
 mod picture;
 mod render;
@@ -21,6 +22,7 @@ pub(crate) use develop::DevelopArgs;
 pub(crate) use device::{DeviceArgs, DevicesArgs};
 pub(crate) use experiment::ExperimentArgs;
 pub(crate) use heatmap::HeatmapArgs;
+pub(crate) use model::{command, parse, scope_of};
 pub(crate) use render::{
     JobArgs, OutputArgs, PerformanceArgs, ProgressStyle, RenderArgs, SimdChoice, TalkArgs, ThreadArgs,
 };
@@ -34,16 +36,16 @@ use std::path::PathBuf;
 /// What every help text ends with.
 const AFTER_HELP: &str = "\
 Exit codes:
-    0  done
+    0  success
     1  the render finished, but an output could not be written
-    2  bad usage, job file or parameters; a device that is not there
-    3  a scene, model, texture, picture or VPL file cannot be read or is malformed
+    2  bad usage, job file or parameters; a device that does not exist
+    3  a scene, model, texture, picture or VPL file is missing, cannot be read or is malformed
   130  interrupted (SIGINT, SIGTERM); what was rendered so far is written
-  Those of `lightcuts compare` are a verdict; see its help.
+  The exit code of `lightcuts compare` is a verdict; see its help.
 
 Environment:
   LIGHTCUTS_PATH  more folders to search for models and textures, separated as in PATH
-  LIGHTCUTS_LOG   what to log, such as `debug`; stands above -v
+  LIGHTCUTS_LOG   what to log, such as `debug`; overrides -v
   NO_COLOR        no colours if set
 
 Start with `lightcuts info SCENE`, then `lightcuts render SCENE`.";
@@ -52,7 +54,7 @@ Start with `lightcuts info SCENE`, then `lightcuts render SCENE`.";
 #[derive(Debug, Parser)]
 #[command(name = "lightcuts", version, after_help = AFTER_HELP, arg_required_else_help = true, max_term_width = 100)]
 pub(crate) struct Cli {
-    /// Log what happens, on stderr; twice for more.
+    /// Log what happens to stderr; repeat for more detail.
     #[arg(short, long, global = true, action = clap::ArgAction::Count)]
     pub(crate) verbose: u8,
     #[command(subcommand)]
@@ -62,16 +64,16 @@ pub(crate) struct Cli {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Render a scene, or render a picture again from the job in its file.
+    /// Render a scene, or render a picture or a job file again.
     #[command(after_help = AFTER_HELP)]
     Render(Box<RenderArgs>),
-    /// Show what was understood of a scene, or what a picture holds.
+    /// Show how a scene was understood, or what a picture contains.
     #[command(after_help = AFTER_HELP)]
     Info(InfoArgs),
-    /// List the devices that can render, and say which one is taken without --device.
+    /// List the devices that can render, and which one is used by default.
     #[command(after_help = device::AFTER_HELP)]
     Devices(DevicesArgs),
-    /// Say how far two pictures differ.
+    /// Measure how much two pictures differ.
     #[command(after_help = compare::AFTER_HELP)]
     Compare(Box<CompareArgs>),
     /// Make a PNG of a finished picture: exposure, tone mapping, transfer, bloom.
@@ -80,20 +82,20 @@ pub(crate) enum Command {
     /// Show a layer of a picture (cut sizes, variance, depth, ...) in false colours with a scale.
     #[command(after_help = AFTER_HELP)]
     Heatmap(HeatmapArgs),
-    /// Render what an experiment file asks for and keep times, counts and differences, one line per render.
+    /// Run the renders of an experiment file and record times, counts and errors, one line per render.
     #[command(after_help = AFTER_HELP)]
     Experiment(ExperimentArgs),
-    /// Make tables, charts and a page of an experiment's results, without rendering.
+    /// Make tables, charts and a web page from an experiment's results, without rendering.
     #[command(after_help = AFTER_HELP)]
     Report(ReportArgs),
-    /// Print a completion script for a shell, to be stored where that shell looks for them.
+    /// Print a completion script for a shell, to be stored where that shell looks for completions.
     Completions {
         /// The shell.
         shell: Shell,
     },
-    /// Print the man page, or write those of all commands to a folder.
+    /// Print the man page, or write the man pages of all commands to a folder.
     Man {
-        /// Folder for `lightcuts.1`, `lightcuts-render.1`, ...
+        /// Folder for `lightcuts.1`, `lightcuts-render.1`, ..., created if absent.
         #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
         directory: Option<PathBuf>,
     },
@@ -119,8 +121,8 @@ pub(crate) struct InfoArgs {
 pub(crate) struct SearchArgs {
     /// Folder to search for models and textures after the scene's own; may be repeated.
     ///
-    /// Searched in this order: beside the file that names them, beside the scene, these folders, the job's `search-path`,
-    /// then those of the environment variable LIGHTCUTS_PATH.
+    /// Search order: next to the file that names them, next to the scene, these folders, the job's `search-path`, then
+    /// the folders in the environment variable LIGHTCUTS_PATH.
     #[arg(long = "search-path", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) folders: Vec<PathBuf>,
 }
@@ -132,7 +134,7 @@ pub(crate) struct CreaseArgs {
     /// [default: that of each object, 40 where it has none]
     ///
     /// Physical scenes in TOML only. It takes the place of every object's `crease-angle`.
-    #[arg(long = "crease-angle", value_name = "DEGREES", value_parser = value::angle)]
+    #[arg(id = "crease-angle", long = "crease-angle", value_name = "DEGREES", value_parser = value::angle)]
     pub(crate) angle: Option<f32>,
 }
 

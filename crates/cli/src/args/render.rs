@@ -11,7 +11,7 @@ const MAX_THREADS: i64 = 1024;
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct RenderArgs {
-    /// A scene; or a picture (.exr, .png) that lightcuts wrote, or a job (.toml), to render what it names.
+    /// A scene (.txt, .toml), or a picture (.exr, .png) or job file (.toml) that lightcuts wrote, to render it again.
     #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath, required_unless_present = "job")]
     pub(crate) scene: Option<PathBuf>,
     #[command(flatten)]
@@ -31,26 +31,26 @@ pub(crate) struct OutputArgs {
     /// Picture to write, .exr or .png; may be repeated [default: SCENE.png in the current folder]
     ///
     /// EXR: linear light in floats, every AOV, and the whole job, so that `lightcuts render FILE.exr` renders it again.
-    /// PNG: 8 bits for eyes, with the job too.
+    /// PNG: 8 bits per channel for display, also with the job.
     #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) pictures: Vec<PathBuf>,
-    /// Write counts, times, memory and settings as JSON.
+    /// Write counts, times, memory use and settings as JSON.
     #[arg(long = "stats", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) stats: Option<PathBuf>,
     /// Write the VPLs as CSV.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(id = "write-vpls", long = "write-vpls", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) write_vpls: Option<PathBuf>,
-    /// Write the whole job, every setting resolved, as TOML for --job.
+    /// Write the whole job, with every setting, as TOML for --job.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) write_job: Option<PathBuf>,
-    /// Check everything and write the job if asked to, but do not render.
+    /// Check everything and write the job if requested, but do not render.
     #[arg(long)]
     pub(crate) dry_run: bool,
     #[command(flatten)]
     pub(crate) talk: TalkArgs,
 }
 
-/// What commands that render say while and after they do.
+/// What commands that render print while they run and at the end.
 #[derive(Debug, Default, Args)]
 pub(crate) struct TalkArgs {
     /// No summary and no progress; warnings and errors only.
@@ -65,22 +65,22 @@ pub(crate) struct TalkArgs {
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Job")]
 pub(crate) struct JobArgs {
-    /// Settings from a job file, or from a picture that lightcuts wrote. Flags win over it, it wins over the scene.
+    /// Settings from a job file, or from a picture that lightcuts wrote. Options override it; it overrides the scene.
     ///
     /// TOML with a table per group of these options: `[image] width = 640`. `scene`, `search-path` and `read-vpls` are
-    /// relative to the file. See --write-job for all keys.
+    /// relative to the file. --write-job writes all keys.
     #[arg(id = "job", long = "job", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) file: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) search: SearchArgs,
     #[command(flatten)]
     pub(crate) crease: CreaseArgs,
-    /// Take VPLs from a CSV that --write-vpls wrote, instead of placing them.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    /// Read the VPLs from a CSV that --write-vpls wrote, instead of placing them.
+    #[arg(id = "read-vpls", long = "read-vpls", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) read_vpls: Option<PathBuf>,
 }
 
-/// What changes the time a render takes, and the picture by rounding at most; not part of the job.
+/// What affects the time that a render takes, and the picture at most by rounding; not part of the job.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Performance")]
 pub(crate) struct PerformanceArgs {
@@ -88,7 +88,7 @@ pub(crate) struct PerformanceArgs {
     pub(crate) devices: DeviceArgs,
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
-    /// Vector instructions of the processor; `off` to track down a fault.
+    /// Use of the processor's vector instructions; `off` to track down a fault.
     #[arg(long, value_enum, default_value_t = SimdChoice::Auto)]
     pub(crate) simd: SimdChoice,
 }
@@ -96,7 +96,7 @@ pub(crate) struct PerformanceArgs {
 /// How many cores are used.
 #[derive(Debug, Default, Args)]
 pub(crate) struct ThreadArgs {
-    /// Number of threads; 0 is one per processor.
+    /// Number of threads; 0 means one per processor.
     #[arg(short = 'j', long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=MAX_THREADS))]
     pub(crate) threads: u16,
 }
@@ -104,9 +104,9 @@ pub(crate) struct ThreadArgs {
 /// Styles of progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ProgressStyle {
-    /// A bar with the time left
+    /// A bar with the remaining time
     Bar,
-    /// Few lines of text
+    /// A few lines of text
     Plain,
     /// A JSON object per line: stage, done, total, elapsed_s, remaining_s; or note
     Json,
@@ -117,7 +117,7 @@ pub(crate) enum ProgressStyle {
 /// Use of vector instructions.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SimdChoice {
-    /// What the processor offers
+    /// All that the processor supports and lightcuts uses
     #[default]
     Auto,
     /// None

@@ -9,9 +9,9 @@ pub(crate) struct ReportArgs {
     /// The `results.jsonl` that `lightcuts experiment` wrote.
     #[arg(value_name = "RESULTS", value_hint = ValueHint::FilePath)]
     pub(crate) results: PathBuf,
-    /// Folder for the report, made if absent [default: report, beside the results]
+    /// Folder for the report, created if absent [default: report, next to the results]
     ///
-    /// Files of an earlier report are replaced, others are left alone. `index.html` is the whole report in one page,
+    /// Files of an earlier report are replaced, others are left alone. `index.html` is the whole report on one page,
     /// pictures included.
     #[arg(short = 'o', long = "output", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) directory: Option<PathBuf>,

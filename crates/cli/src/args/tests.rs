@@ -1,17 +1,23 @@
 //! Holds the declarations of the flags against the settings that they set.
 
-use super::{Cli, Command};
+use super::{Cli, Command, RenderArgs, command, scope_of};
+use clap::Parser;
 use clap::builder::PossibleValue;
-use clap::{CommandFactory, Parser};
 use lightcuts::Settings;
+use lightcuts::rendering::{Model, Scope};
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
-/// The settings that a command line sets.
-fn flags(arguments: &[&str]) -> Table {
+/// The arguments of a `render`.
+fn parsed(arguments: &[&str]) -> Box<RenderArgs> {
     let words = ["lightcuts", "render", "scene"].iter().chain(arguments);
     let Command::Render(args) = Cli::try_parse_from(words).unwrap().command else { panic!("not `render`") };
-    Table::try_from(&args.settings).unwrap()
+    args
+}
+
+/// The settings that a command line sets.
+fn flags(arguments: &[&str]) -> Table {
+    parsed(arguments).settings.table()
 }
 
 /// Every key with a value, as `table.key`.
@@ -32,7 +38,7 @@ fn leaves(table: &Table, prefix: &str) -> BTreeMap<String, String> {
 
 #[test]
 fn the_declaration_is_consistent() {
-    Cli::command().debug_assert();
+    command().debug_assert();
 }
 
 #[test]
@@ -40,20 +46,66 @@ fn nothing_is_set_without_flags() {
     assert_eq!(leaves(&flags(&[]), ""), BTreeMap::new());
 }
 
+/// Options that concern no model of light, or both alike, and are no settings.
+const COMMON: [&str; 14] = [
+    "scene",
+    "pictures",
+    "stats",
+    "write_job",
+    "dry_run",
+    "quiet",
+    "progress",
+    "job",
+    "folders",
+    "size",
+    "device",
+    "gpu_budget",
+    "threads",
+    "simd",
+];
+
 #[test]
-fn every_setting_has_one_flag_whose_help_tells_the_default() {
-    let mut settings = Settings::default();
-    settings.filter.radius = Some(0.5); // the box's
-    let mut expected = leaves(&Table::try_from(&settings).unwrap(), "");
-    expected.insert("display.exposure".to_owned(), "1".to_owned()); // which is not written
-    expected.insert("vpl.enabled".to_owned(), "false".to_owned()); // the flag is its opposite
-    let command = Cli::command();
-    let render = command.find_subcommand("render").unwrap();
-    let is_setting = |arg: &&clap::Arg| {
-        !["Output", "Job", "Performance"].contains(&arg.get_help_heading().unwrap_or("Output"))
-            && arg.get_id() != "size"
+fn every_option_has_its_model_or_is_common() {
+    let command = command();
+    let page = include_str!("../../../../docs/guide/render.md");
+    for arg in command.find_subcommand("render").unwrap().get_arguments() {
+        let (id, help) = (arg.get_id().as_str(), arg.get_help().unwrap().to_string());
+        let scope = scope_of(id);
+        assert_eq!(scope.is_some(), !COMMON.contains(&id), "{id}: give it a scope, or name it here");
+        for model in [Model::Thesis, Model::Physical] {
+            let is_marked = help.contains(&format!(" ({})", model.name()));
+            assert_eq!(is_marked, scope == Some(Scope::Only(model)), "{id}: {help}");
+        }
+        // The guide says the same, in a column of its own.
+        let Some(flag) = arg.get_long() else { continue };
+        let cell = match scope {
+            Some(Scope::Only(model)) => model.name(),
+            Some(Scope::Both) => "both",
+            None => continue,
+        };
+        let row = page
+            .lines()
+            .find(|line| line.starts_with('|') && line.split('|').nth(1).unwrap().contains(&format!("`--{flag}")));
+        let row = row.unwrap_or_else(|| panic!("docs/guide/render.md does not tell of --{flag}"));
+        assert!(row.split('|').any(|found| found.trim() == cell), "--{flag} is for {cell}: {row}");
+    }
+}
+
+#[test]
+fn every_setting_has_one_flag_whose_help_tells_the_defaults() {
+    let table = |mut settings: Settings| {
+        settings.filter.radius = Some(0.5); // the box's
+        leaves(&Table::try_from(&settings).unwrap(), "")
     };
-    for arg in render.get_arguments().filter(is_setting) {
+    let (mut expected, mut physical) = (table(Settings::default()), table(Settings::for_physical()));
+    for table in [&mut expected, &mut physical] {
+        table.insert("display.exposure".to_owned(), "1".to_owned()); // which is not written
+    }
+    expected.insert("vpl.enabled".to_owned(), "false".to_owned()); // the flag is its opposite
+    physical.insert("vpl.enabled".to_owned(), "false".to_owned());
+    let command = command();
+    let render = command.find_subcommand("render").unwrap();
+    for arg in render.get_arguments().filter(|arg| Scope::of(arg.get_id().as_str()).is_some()) {
         let flag = arg.get_long().unwrap();
         let choices = arg.get_possible_values();
         let values: Vec<_> =
@@ -62,14 +114,23 @@ fn every_setting_has_one_flag_whose_help_tells_the_default() {
         for value in &values {
             let set = flags(&[&format!("--{flag}={value}")]);
             assert!(set.clone().try_into::<Settings>().is_ok(), "--{flag}={value}");
-            assert_eq!(leaves(&set, "").len(), 1, "--{flag}");
+            // The option's id is its key.
+            assert_eq!(leaves(&set, "").into_keys().collect::<Vec<_>>(), [arg.get_id().as_str()], "--{flag}");
         }
-        let key = leaves(&flags(&[&format!("--{flag}={}", values[0])]), "").into_keys().next().unwrap();
-        let default = expected.remove(&key).unwrap_or_else(|| panic!("--{flag}: no or second flag for {key}"));
+        let scope = Scope::of(arg.get_id().as_str()).unwrap();
+        let args = parsed(&[&format!("--{flag}={}", values[0])]);
+        for model in [Model::Thesis, Model::Physical] {
+            let foreign = if scope.includes(model) { Vec::new() } else { vec![format!("--{flag}")] };
+            assert_eq!(args.foreign_options(model), foreign);
+        }
+        let key = arg.get_id().as_str();
+        let default = expected.remove(key).unwrap_or_else(|| panic!("--{flag}: no or second flag for {key}"));
         let help = arg.get_help().unwrap().to_string();
         let told = help.split("[default: ").nth(1).unwrap_or_else(|| panic!("--{flag}: no default in the help"));
         let words: Vec<_> = told.split([' ', ',', ';', ']']).collect();
-        assert!(words.contains(&default.as_str()), "--{flag}: the help tells {told:?}, the default is {default}");
+        for default in [default, physical[key].clone()] {
+            assert!(words.contains(&default.as_str()), "--{flag}: the help tells {told:?}, the default is {default}");
+        }
     }
     assert_eq!(expected, BTreeMap::new(), "settings without a flag");
 }
@@ -86,24 +147,34 @@ fn accepted(key: &str) -> Vec<String> {
 
 #[test]
 fn flags_offer_every_word_that_the_settings_accept() {
-    let command = Cli::command();
+    let command = command();
     let render = command.find_subcommand("render").unwrap();
     let mut flags_with_words = 0;
     for arg in render.get_arguments() {
         let mut words: Vec<_> = arg.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
-        let is_setting = !["Output", "Job", "Performance"].contains(&arg.get_help_heading().unwrap_or("Output"));
+        let is_setting = Scope::of(arg.get_id().as_str()).is_some();
         if !is_setting || words.is_empty() || words == ["true", "false"] {
             continue;
         }
-        let flag = format!("--{}={}", arg.get_long().unwrap(), words[0]);
-        let key = leaves(&flags(&[&flag]), "").into_keys().next().unwrap();
-        let mut expected = accepted(&key);
+        let key = arg.get_id().as_str();
+        let mut expected = accepted(key);
         words.sort_unstable();
         expected.sort_unstable();
         assert_eq!(words, expected, "{key}");
         flags_with_words += 1;
     }
     assert_eq!(flags_with_words, 7);
+}
+
+#[test]
+fn options_are_told_as_they_are_typed() {
+    let args = parsed(&["--size=3x4", "--no-second-pass", "--bloom", "--read-vpls=v.csv"]);
+    let foreign = args.foreign_options(Model::Physical);
+    assert_eq!(foreign, ["--bloom", "--no-second-pass", "--read-vpls"]);
+    assert_eq!(args.foreign_options(Model::Thesis), [""; 0]);
+    let told =
+        ["image.width", "filter.kind", "display.global.max-display-luminance"].map(|key| args.settings.option_for(key));
+    assert_eq!(told, ["the width of --size", "--filter", "--global-luminance"]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! From what the command line asks for to the devices of a render.
+//! From the command line to the devices of a render.
 
 use super::list::why_no_gpu;
 use crate::args::DeviceArgs;
@@ -6,7 +6,7 @@ use crate::exit::Failure;
 use lightcuts::gpu::{self, AdapterSummary, Assignment, DeviceChoice, Fleet, NoDevice};
 use lightcuts::{Monitor, PerStation, Simd, World};
 
-/// Which adapters the stations take. Fails if one that was asked for is not there.
+/// Which adapters the stations use. Fails if a requested one does not exist.
 pub(crate) fn assigned(args: &DeviceArgs) -> Result<Assignment, Failure> {
     let wanted = args.wanted();
     let adapters = gpu::adapters_for(&wanted);
@@ -17,11 +17,11 @@ pub(crate) fn assigned(args: &DeviceArgs) -> Result<Assignment, Failure> {
     Ok(assignment)
 }
 
-/// Names what is there instead.
+/// Lists the available devices.
 fn not_there(why: &NoDevice, adapters: &[AdapterSummary]) -> Failure {
     let cpu = std::iter::once("the CPU (--device cpu)".to_owned());
     let names: Vec<String> = cpu.chain(adapters.iter().map(|adapter| format!("`{}`", adapter.name))).collect();
-    Failure::usage(why.to_string(), format!("here are {}", names.join(", ")))
+    Failure::usage(why.to_string(), format!("available: {}", names.join(", ")))
 }
 
 /// Opens the devices for a world.
@@ -41,13 +41,13 @@ pub(crate) fn open<'w>(
     Ok(fleet)
 }
 
-/// Fails if another device than the CPU was asked for: nothing else renders the physical model.
+/// Fails if a device other than the CPU was requested: nothing else renders the physical model.
 pub(crate) fn require_cpu(args: &DeviceArgs) -> Result<(), Failure> {
     let is_other = |choice: &&DeviceChoice| matches!(choice, DeviceChoice::Gpu | DeviceChoice::Named(_));
     match args.wanted().each().iter().find(is_other) {
         None => Ok(()),
         Some(choice) => Err(Failure::usage(
-            format!("the physical model is rendered by the CPU only, not by `{choice}`"),
+            format!("the physical model runs on the CPU only, not on `{choice}`"),
             "leave out --device and --station-device",
         )),
     }

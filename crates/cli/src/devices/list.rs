@@ -1,4 +1,4 @@
-//! What there is to render on: serialised, what machines are told.
+//! The devices that can render, as they are serialised to JSON.
 
 use lightcuts::device::{DeviceKind, processor_name};
 use lightcuts::gpu::{AdapterSummary, DeviceChoice, choose};
@@ -13,7 +13,7 @@ pub(super) struct DeviceList {
     pub(super) adapters: Vec<Adapter>,
 }
 
-/// What is taken where nothing is asked for.
+/// The default device.
 #[derive(Debug, Serialize)]
 pub(super) struct Auto {
     /// `cpu`, or the adapter's name.
@@ -72,7 +72,7 @@ impl From<AdapterSummary> for Adapter {
     }
 }
 
-/// An interface by the name that its makers gave it.
+/// The name of a graphics API as its makers write it.
 fn api(name: &str) -> &str {
     match name {
         "vulkan" => "Vulkan",
@@ -101,7 +101,7 @@ fn auto(adapters: &[AdapterSummary]) -> Auto {
     // This choice cannot fail.
     match choose(&DeviceChoice::Auto, adapters).ok().flatten() {
         Some(place) => {
-            Auto { device: adapters[place].name.clone(), why: "it is the first suited graphics card".to_owned() }
+            Auto { device: adapters[place].name.clone(), why: "it is the first suitable graphics card".to_owned() }
         }
         None => Auto { device: "cpu".to_owned(), why: why_no_gpu(adapters).to_owned() },
     }
@@ -110,9 +110,9 @@ fn auto(adapters: &[AdapterSummary]) -> Auto {
 /// Why none of these is a graphics card that can be used.
 pub(super) fn why_no_gpu(adapters: &[AdapterSummary]) -> &'static str {
     if adapters.is_empty() {
-        "there is no graphics card, or no driver of Vulkan, Metal or DX12 for it"
+        "there is no graphics card, or no Vulkan, Metal or DX12 driver for it"
     } else if adapters.iter().any(|adapter| adapter.kind == DeviceKind::Gpu) {
-        "no graphics card is suited"
+        "no graphics card is suitable"
     } else {
         "there is no graphics card, and a software driver is slower than the CPU renderer itself"
     }
@@ -140,10 +140,10 @@ pub(super) mod tests {
         let (card, software) = (DeviceKind::Gpu, DeviceKind::SoftwareGpu);
         let of = |adapters: &[AdapterSummary]| auto(adapters);
         let taken = of(&[adapter("old", card, Some("too old")), adapter("new", card, None)]);
-        assert_eq!((taken.device.as_str(), taken.why.as_str()), ("new", "it is the first suited graphics card"));
+        assert_eq!((taken.device.as_str(), taken.why.as_str()), ("new", "it is the first suitable graphics card"));
         for (adapters, why) in [
-            (Vec::new(), "no graphics card, or no driver"),
-            (vec![adapter("old", card, Some("too old"))], "no graphics card is suited"),
+            (Vec::new(), "no graphics card, or no Vulkan"),
+            (vec![adapter("old", card, Some("too old"))], "no graphics card is suitable"),
             (vec![adapter("llvmpipe", software, None)], "slower than the CPU renderer"),
         ] {
             let taken = of(&adapters);

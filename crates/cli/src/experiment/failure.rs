@@ -17,30 +17,29 @@ pub(super) fn plan_failure(error: PlanError) -> Failure {
 }
 
 pub(super) fn unknown_name(error: &UnknownName) -> Failure {
-    Failure::usage(error.to_string(), format!("expected some of {}", error.known.join(", ")))
+    Failure::usage(error.to_string(), format!("expected one of {}", error.known.join(", ")))
 }
 
 pub(super) fn results_failure(error: &ResultsError) -> Failure {
     let (exit, help) = match error {
-        ResultsError::InUse { .. } => (Exit::Usage, "wait for its end, or give another folder with -o"),
+        ResultsError::InUse { .. } => (Exit::Usage, "wait until it ends, or use another folder with -o"),
         ResultsError::Malformed { .. } | ResultsError::Unfit { .. } => {
-            (Exit::Input, "give another folder with -o, or repair the file")
+            (Exit::Input, "use another folder with -o, or repair the file")
         }
-        ResultsError::Io { action: "read", .. } => (Exit::Input, "give another folder with -o"),
-        ResultsError::Io { .. } => (Exit::NotWritten, "rows that were finished before are kept"),
+        ResultsError::Io { action: "read", .. } => (Exit::Input, "use another folder with -o"),
+        ResultsError::Io { .. } => (Exit::NotWritten, "finished rows are kept"),
     };
     Failure::new(exit, MietteDiagnostic::new(error.to_string()).with_help(help))
 }
 
 pub(super) fn run_failure(error: RunError, directory: &Path) -> Failure {
-    let help = format!("give another folder with -o, or remove {} to render everything again", directory.display());
+    let help = format!("use another folder with -o, or remove {} to render everything again", directory.display());
     match error {
         RunError::Results(error) => results_failure(&error),
         RunError::World { .. } => Failure::input(error),
-        RunError::Device { .. } => Failure::usage(
-            error.to_string(),
-            "leave the configuration out with --only; rows that were finished before are kept",
-        ),
+        RunError::Device { .. } => {
+            Failure::usage(error.to_string(), "leave the configuration out with --only; finished rows are kept")
+        }
         RunError::Settings(_) | RunError::Threads(_) => Failure::usage(error.to_string(), "change the experiment file"),
         RunError::NotReproducible { .. } => {
             Failure::new(Exit::NotWritten, MietteDiagnostic::new(error.to_string()).with_help(help))

@@ -18,7 +18,7 @@ use miette::Report;
 use progress::Progress;
 use std::path::{Path, PathBuf};
 
-/// Where experiments go unless told otherwise, in the current folder.
+/// Default folder of experiments, in the current folder.
 const OUTPUT: &str = "out";
 
 /// An experiment with what the command line says of it.

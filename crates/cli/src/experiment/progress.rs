@@ -1,4 +1,4 @@
-//! Progress over a whole experiment on standard error, in three styles, and its ear for signals.
+//! Progress of a whole experiment on standard error, in three styles, and cancellation by signals.
 
 use super::text::title;
 use crate::args::ProgressStyle;

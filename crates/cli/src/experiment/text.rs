@@ -28,16 +28,16 @@ pub(super) fn summary(plan: &Plan, outcome: &Outcome, directory: &Path) -> Strin
     let mut text = Lines::of(plan);
     let results = directory.join(FILE_NAME);
     let report = directory.join("report");
-    text.line("rendered", &format!("{} jobs; {} were finished before", outcome.rendered, outcome.skipped));
+    text.line("rendered", &format!("{} jobs; {} had been finished before", outcome.rendered, outcome.skipped));
     text.line("results", &results.display().to_string());
     text.line("next", &format!("lightcuts report {} -o {}", quoted(&results), quoted(&report)));
     text.0
 }
 
-/// What is left of an experiment that was broken off, and how it goes on.
+/// What is left of an interrupted experiment, and how it continues.
 pub(super) fn interrupted(outcome: &Outcome, of: usize, directory: &Path) -> String {
     format!(
-        "lightcuts: the render on its way was dropped; {} of {of} jobs are finished in {}; the same command goes on",
+        "lightcuts: the current render was discarded; {} of {of} jobs are finished in {}; the same command continues",
         outcome.rendered + outcome.skipped,
         directory.join(FILE_NAME).display()
     )
@@ -54,7 +54,7 @@ pub(super) fn title(job: &PlannedJob) -> String {
     title
 }
 
-/// A path as a shell takes it.
+/// A path quoted for a shell.
 fn quoted(path: &Path) -> String {
     let text = path.display().to_string();
     let plain = |c: char| c.is_alphanumeric() || "/\\:._-+".contains(c);
@@ -78,7 +78,7 @@ impl Lines {
         }
         for adapter in plan.used_adapters() {
             let slow = match adapter.kind {
-                DeviceKind::SoftwareGpu => ": a driver that computes on the processor, slower than the CPU renderer",
+                DeviceKind::SoftwareGpu => ": a driver that runs on the processor, slower than the CPU renderer",
                 DeviceKind::Cpu | DeviceKind::Gpu => "",
             };
             text.line("GPU", &format!("{}{slow}", adapter.name));

@@ -1,16 +1,19 @@
 //! Jobs in files: TOML, alone or in the header of a picture.
 
 use super::diagnostic::{TOP_KEYS, toml_fault};
-use super::path;
+use super::merge::model_in;
+use super::{kind, path};
+use crate::args::scope_of;
 use crate::exit::{Exit, Failure};
 use crate::fault::fault;
-use lightcuts::rendering::value_at;
+use lightcuts::rendering::{Model, Scope, keys_of, value_at, value_in};
 use lightcuts::{Settings, SettingsError, image};
 use serde::Deserialize;
 use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, Deserializer};
+use toml::{Table, Value};
 
 /// Name of the text in a picture that holds the whole job as TOML.
 pub(crate) const JOB_ATTRIBUTE: &str = "lightcuts:job";
@@ -20,7 +23,7 @@ pub(crate) const VERSION_ATTRIBUTE: &str = "lightcuts:version";
 /// Longest job file in bytes; a whole job has about 2 KB.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// A job as far as a file tells it. Paths hold from the current folder.
+/// The part of a job that a file gives. Paths are relative to the current folder.
 #[derive(Debug)]
 pub(crate) struct JobFile {
     name: String,
@@ -30,7 +33,7 @@ pub(crate) struct JobFile {
     pub(crate) crease_angle: Option<f32>,
     pub(crate) read_vpls: Option<PathBuf>,
     /// The tables of settings, with the keys that are there.
-    pub(super) settings: toml::Table,
+    settings: Table,
 }
 
 /// The keys beside the settings.
@@ -49,26 +52,19 @@ pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }
 
-/// Whether a file holds a job and not a scene: pictures do, and TOML that does not look like a scene. A file that is not there
-/// is a scene that is not there.
+/// Whether a file holds a job and not a scene: pictures do, and TOML files that are no scenes. What cannot be read
+/// counts as a scene: reading it will tell why.
 pub(crate) fn is_job_carrier(path: &Path) -> bool {
     ["exr", "png"].iter().any(|extension| has_extension(path, extension))
-        || (has_extension(path, "toml") && path.exists() && !is_scene_document(path))
+        || (has_extension(path, "toml") && start_of(path).is_some_and(|text| !kind::is_scene(&text)))
 }
 
-/// Whether a TOML file names a format, or has a table that only scenes have: reading it as a scene tells best what is wrong
-/// with it then. One that cannot be read is a job: reading it will tell why.
-fn is_scene_document(path: &Path) -> bool {
-    const TABLES: [&str; 6] = ["camera", "environment", "material", "mesh", "object", "light"];
-    let names_format = |line: &str| {
-        line.split_once('=').is_some_and(|(key, value)| key.trim() == "format" && value.contains("lightcuts-scene"))
-    };
-    let is_table = |line: &str| {
-        let name = line.trim().trim_start_matches('[').split(']').next().unwrap_or_default();
-        line.trim_start().starts_with('[') && TABLES.contains(&name.trim())
-    };
-    path.is_file()
-        && std::fs::read_to_string(path).is_ok_and(|text| text.lines().any(|line| names_format(line) || is_table(line)))
+/// The text of a regular file, or as much of it as a job may have.
+fn start_of(path: &Path) -> Option<String> {
+    require_regular(path).ok()?;
+    let mut bytes = Vec::new();
+    std::fs::File::open(path).ok()?.take(MAX_BYTES).read_to_end(&mut bytes).ok()?;
+    Some(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 impl JobFile {
@@ -114,6 +110,65 @@ impl JobFile {
         value_at(&self.text, parameter).map(|value| value.span())
     }
 
+    /// The model of light that this job names.
+    pub(crate) fn model(&self) -> Option<Model> {
+        model_in(&self.settings)
+    }
+
+    /// The settings that this job lends to a render in a model of light. Where the render is in another model than the
+    /// job names, as `--model` can ask for, these are those that both models have.
+    ///
+    /// Fails at a key that has no meaning in the job's own model, or, where it names none, in that of the render.
+    pub(super) fn settings_for(&self, model: Model) -> Result<Table, Failure> {
+        let own = self.model().unwrap_or(model);
+        let mut settings = self.settings.clone();
+        let read_vpls = self.read_vpls.iter().map(|_| "read-vpls".to_owned());
+        let tolerates_defaults = self.is_whole();
+        for key in keys_of(&self.settings).into_iter().chain(read_vpls) {
+            let Some(scope) = scope_of(&key) else { continue };
+            let is_tolerated = tolerates_defaults && self.is_default(&key);
+            if !scope.includes(own) && !is_tolerated {
+                return Err(self.foreign(&key, own));
+            }
+            if !scope.includes(model) {
+                remove(&mut settings, &key);
+            }
+        }
+        Ok(settings)
+    }
+
+    /// Whether this job holds every table of both models, as those do that earlier versions wrote.
+    fn is_whole(&self) -> bool {
+        let is_table_of_one = |key: &&str| matches!(Scope::of(key), Some(Scope::Only(_)));
+        let defaults = Table::try_from(Settings::default()).unwrap_or_default();
+        self.model().is_some()
+            && defaults.keys().map(String::as_str).filter(is_table_of_one).all(|key| self.settings.contains_key(key))
+    }
+
+    /// Whether this job sets a parameter to its built-in default.
+    fn is_default(&self, key: &str) -> bool {
+        let read: Result<Settings, _> = self.settings.clone().try_into();
+        let Ok(Ok(read)) = read.map(Table::try_from) else { return false };
+        let defaults = Table::try_from(Settings::default()).unwrap_or_default();
+        value_in(&read, key).is_some_and(|value| value_in(&defaults, key) == Some(value))
+    }
+
+    /// The complaint about a parameter without a meaning in the model.
+    fn foreign(&self, key: &str, model: Model) -> Failure {
+        let message = format!("`{key}` has no meaning in {} of light", model.title());
+        let span = self.span_of(key).unwrap_or_default();
+        let label = if model == Model::Thesis { "only with --model physical" } else { "only in the thesis' model" };
+        fault(Exit::Usage, &self.name, &self.text, span, &message, label)
+    }
+
+    /// The complaint that this job names the thesis' model for a scene that it cannot render.
+    pub(crate) fn wrong_model(&self) -> Failure {
+        let span = self.span_of("run.model").unwrap_or_default();
+        let message = "run.model is thesis, but the scene is of the physical model";
+        let label = "with --model physical the settings are used that both models have";
+        fault(Exit::Usage, &self.name, &self.text, span, message, label)
+    }
+
     /// The complaint about a parameter that this job sets at `span`.
     pub(super) fn out_of_range(&self, error: &SettingsError, span: Range<usize>) -> Failure {
         fault(Exit::Usage, &self.name, &self.text, span, &error.to_string(), &format!("expected {}", error.expected))
@@ -121,16 +176,28 @@ impl JobFile {
 }
 
 /// Checks a job's text as far as it can be without the scene: syntax, keys, kinds of values.
-fn checked(text: &str) -> Result<(Head, toml::Table), toml::de::Error> {
+fn checked(text: &str) -> Result<(Head, Table), toml::de::Error> {
     let head = toml::from_str(text)?;
     let mut document = DeTable::parse(text)?;
-    let mut settings: toml::Table = toml::from_str(text)?;
+    let mut settings: Table = toml::from_str(text)?;
     for key in TOP_KEYS {
         document.get_mut().remove(key);
         settings.remove(key);
     }
     Settings::deserialize(Deserializer::from(document))?;
     Ok((head, settings))
+}
+
+/// Removes `table.key`.
+fn remove(table: &mut Table, key: &str) {
+    match key.split_once('.') {
+        None => drop(table.remove(key)),
+        Some((first, rest)) => {
+            if let Some(Value::Table(inner)) = table.get_mut(first) {
+                remove(inner, rest);
+            }
+        }
+    }
 }
 
 fn read_text(path: &Path) -> Result<String, Failure> {

@@ -1,83 +1,63 @@
 //! Settings from four sources, by laying TOML tables over each other.
 
 use super::JobFile;
-use crate::args::SettingFlags;
+use crate::args::{RenderArgs, SettingFlags};
 use crate::exit::Failure;
 use lightcuts::Settings;
-use lightcuts::rendering::{Model, overlay};
-use serde::Serialize;
-use toml::{Table, Value};
+use lightcuts::rendering::{Model, overlay, value_in};
+use toml::Table;
 
-/// `scene` (built-in defaults with the scene's recommendations), under the job files in their order, under the flags;
-/// checked, so that rendering cannot fail.
-pub(crate) fn resolve(scene: &Settings, files: &[JobFile], flags: &impl Serialize) -> Result<Settings, Failure> {
+/// The model of light asked for: by the flags, else by the last job file that names one, else that of the scene.
+pub(crate) fn model(scene: Model, files: &[JobFile], flags: &SettingFlags) -> Model {
+    let of_flags = model_in(&flags.table());
+    of_flags.or_else(|| files.iter().rev().find_map(JobFile::model)).unwrap_or(scene)
+}
+
+/// `recommended` (built-in defaults with the scene's recommendations, in the model of light of the render), under the
+/// job files in their order, under the flags; checked, so that rendering cannot fail. Fails at a key of a job file that
+/// has no meaning in the model.
+pub(crate) fn resolve(recommended: &Settings, files: &[JobFile], flags: &SettingFlags) -> Result<Settings, Failure> {
     let unexpected = |error: &dyn ToString| Failure::usage(error.to_string(), "see `lightcuts render --help`");
-    let mut table = Table::try_from(scene).map_err(|error| unexpected(&error))?;
+    let mut table = Table::try_from(recommended).map_err(|error| unexpected(&error))?;
     for file in files {
-        overlay(&mut table, &file.settings);
+        overlay(&mut table, &file.settings_for(recommended.run.model)?);
     }
-    let flags = Table::try_from(flags).map_err(|error| unexpected(&error))?;
-    overlay(&mut table, &flags);
+    let given = flags.table();
+    overlay(&mut table, &given);
     let settings: Settings = table.try_into().map_err(|error: toml::de::Error| unexpected(&error.message()))?;
     settings.validate().map_err(|error| {
         let culprit = files.iter().rev().find_map(|file| Some((file, file.span_of(&error.name)?)));
         match culprit {
-            _ if is_set(&flags, &error.name) => Failure::usage(error.to_string(), "it comes from the command line"),
+            _ if value_in(&given, &error.name).is_some() => {
+                let option = flags.option_for(&error.name);
+                let message = format!("{option} is {}; expected {}", error.value, error.expected);
+                Failure::usage(message, "see `lightcuts render --help`")
+            }
             Some((file, span)) => file.out_of_range(&error, span),
-            None => Failure::usage(error.to_string(), "it comes from the scene's recommendations"),
+            None => Failure::usage(error.to_string(), "this is what the scene recommends; set another value"),
         }
     })?;
     Ok(settings)
 }
 
-/// Tables and keys that matter in the thesis' model of light only.
-const OF_THESIS: [&str; 14] = [
-    "vpl",
-    "ambient-occlusion",
-    "caustics.step",
-    "caustics.radius",
-    "caustics.min-photons",
-    "caustics.min-reflection",
-    "caustics.min-refraction",
-    "caustics.min-diffuse",
-    "bloom",
-    "gather.threshold",
-    "run.max-depth",
-    "sampling.sampler",
-    "sampling.adaptive-samples",
-    "sampling.adaptive-threshold",
-];
-
-/// Those of the physical model.
-const OF_PHYSICAL: [&str; 1] = ["physical"];
-
-/// Fails if the command line sets what does not matter in a model of light.
-pub(crate) fn require_fitting(flags: &SettingFlags, model: Model) -> Result<(), Failure> {
-    let table =
-        Table::try_from(flags).map_err(|error| Failure::usage(error.to_string(), "see `lightcuts render --help`"))?;
-    let (foreign, name) = match model {
-        Model::Thesis => (&OF_PHYSICAL[..], "thesis'"),
-        Model::Physical => (&OF_THESIS[..], "physical"),
+/// Fails if the command line sets what has no meaning in the model of light of the render; `of_scene` is that of its
+/// scene.
+pub(crate) fn require_fitting(args: &RenderArgs, model: Model, of_scene: Model) -> Result<(), Failure> {
+    let foreign = args.foreign_options(model);
+    if foreign.is_empty() {
+        return Ok(());
+    }
+    let (have, them) = if foreign.len() == 1 { ("has", "it") } else { ("have", "them") };
+    let message = format!("{} {have} no meaning in {} of light", foreign.join(", "), model.title());
+    let help = match (model, of_scene) {
+        (Model::Physical, Model::Physical) => format!("leave {them} out: the scene is of the physical model"),
+        (Model::Physical, Model::Thesis) => format!("leave {them} out, or render with --model thesis"),
+        (Model::Thesis, _) => format!("leave {them} out, or render with --model physical"),
     };
-    match foreign.iter().find(|key| is_set(&table, key)) {
-        None => Ok(()),
-        Some(key) => Err(Failure::usage(
-            format!("an option of `{key}` is given, which has no meaning in the {name} model of light"),
-            "leave it out, or choose the other model with --model",
-        )),
-    }
+    Err(Failure::usage(message, help))
 }
 
-/// Whether `table.key` has a value.
-fn is_set(table: &Table, parameter: &str) -> bool {
-    let (first, rest) = parameter.split_once('.').unwrap_or((parameter, ""));
-    match table.get(first) {
-        Some(Value::Table(inner)) if rest.is_empty() => inner.values().any(|value| !is_empty_table(value)),
-        Some(Value::Table(inner)) => is_set(inner, rest),
-        found => found.is_some(),
-    }
-}
-
-fn is_empty_table(value: &Value) -> bool {
-    value.as_table().is_some_and(Table::is_empty)
+/// The model that a table of settings names.
+pub(super) fn model_in(settings: &Table) -> Option<Model> {
+    value_in(settings, "run.model")?.clone().try_into().ok()
 }

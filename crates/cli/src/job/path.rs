@@ -2,8 +2,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
-/// `path`, seen from `directory`, with `/` between its parts; absolute where they share no folder, as on two drives: then
-/// they will not move together. Links are followed first, so that `..` means what it says.
+/// `path`, seen from `directory`, with `/` between its parts; absolute where they share no folder, as on two drives:
+/// then they will not move together. Links are followed first, so that `..` means what it says.
 pub(super) fn relative_to(path: &Path, directory: &Path) -> String {
     let (path, directory) = (real(path), real(directory));
     let common = path.components().zip(directory.components()).take_while(|(a, b)| a == b).count();
@@ -17,7 +17,7 @@ pub(super) fn relative_to(path: &Path, directory: &Path) -> String {
     if parts.is_empty() { ".".to_owned() } else { parts.join("/") }
 }
 
-/// Absolute and without links where the file exists, else as near as that can be had.
+/// Absolute and without links if the file exists, else as close to that as possible.
 fn real(path: &Path) -> PathBuf {
     let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
     path.canonicalize().or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_path_buf())

@@ -358,10 +358,10 @@ fn threads_change_nothing_but_the_time() {
 }
 
 #[test]
-fn help_tells_the_exit_codes_of_this_command() {
+fn help_lists_the_exit_codes_of_this_command() {
     let folder = folder();
     let said = stdout(&folder.run("compare --help").success());
-    for expected in ["they differ", "trouble", "flip_ldr>0.05", "red for blue", "Yee 2004", "the thesis"] {
+    for expected in ["they differ", "no verdict", "flip_ldr>0.05", "swaps red and blue", "Yee 2004", "the thesis"] {
         assert!(said.contains(expected), "{expected} is missing in:\n{said}");
     }
     assert!(stderr(&folder.run("compare a.exr same.exr --progress plain").code(0)).starts_with("compare ..."));

@@ -28,7 +28,7 @@ fn the_cpu_is_listed_and_auto_explained() {
     let listed = folder.run("devices").success().stderr("");
     let said = stdout(&listed);
     assert!(said.starts_with("CPU          ") && said.contains(" threads, "), "{said}");
-    assert!(said.lines().last().unwrap().starts_with("auto         takes "), "{said}");
+    assert!(said.lines().last().unwrap().starts_with("auto         uses "), "{said}");
     let list: Value = serde_json::from_str(&stdout(&folder.run("devices --json").success())).unwrap();
     assert!(list["cpu"]["threads"].as_u64() > Some(0) && list["auto"]["why"].is_string(), "{list}");
     assert_eq!(list["adapters"].as_array().unwrap().len(), adapters().len());
@@ -40,13 +40,16 @@ fn a_device_that_is_not_there_is_bad_usage() {
     let folder = Folder::new();
     for arguments in ["--device nonsense", "--station-device tree=nonsense", "--device nonsense --dry-run"] {
         let said = stderr(&folder.run(&format!("render scene.txt {arguments}")).code(2));
-        assert!(said.contains("there is no device `nonsense`") && said.contains("here are the CPU"), "{said}");
+        assert!(said.contains("there is no device `nonsense`") && said.contains("available: the CPU"), "{said}");
         assert!(!folder.has("scene.png"));
     }
     for (arguments, expected) in [
         ("--device=", "expected auto, cpu, gpu"),
         ("--station-device gpu", "expected STATION=DEVICE"),
-        ("--station-device first=gpu", "`first` is no station; expected some of place, photons, tree, gather, develop"),
+        (
+            "--station-device first=gpu",
+            "`first` is not a station; expected one of place, photons, tree, gather, develop",
+        ),
         ("--gpu-budget 0", "0 is not in 1..=1000"),
     ] {
         let said = stderr(&folder.run(&format!("render scene.txt {arguments}")).code(2));
@@ -65,7 +68,7 @@ fn without_drivers_the_cpu_renders() {
     assert_eq!((noted.as_str(), code), ("", Some(0)), "no GPU is nothing unusual");
     if cfg!(target_os = "linux") {
         let (said, _, code) = without_drivers(&folder, "devices");
-        assert!(said.starts_with("CPU ") && said.contains("auto         takes the CPU"), "{said}");
+        assert!(said.starts_with("CPU ") && said.contains("auto         uses the CPU"), "{said}");
         assert_eq!(code, Some(0));
         let (_, noted, code) = without_drivers(&folder, "render scene.txt --device gpu");
         assert!(noted.contains("there is no graphics adapter"), "{noted}");

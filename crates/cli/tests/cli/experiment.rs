@@ -46,13 +46,15 @@ fn an_experiment_is_rendered_once() {
     for expected in [
         "experiment   small",
         "absent       gpu: there is no device `a card that nobody has`",
-        "rendered     6 jobs; 0 were finished before",
+        "rendered     6 jobs; 0 had been finished before",
         "next         lightcuts report out/small/results.jsonl -o out/small/report",
     ] {
         assert!(said.contains(expected), "{expected} is missing in:\n{said}");
     }
     let before = folder.bytes("out/small/results.jsonl");
-    assert!(stdout(&folder.run("experiment e.toml").success()).contains("rendered     0 jobs; 6 were finished before"));
+    assert!(
+        stdout(&folder.run("experiment e.toml").success()).contains("rendered     0 jobs; 6 had been finished before")
+    );
     assert!(before == folder.bytes("out/small/results.jsonl"));
     assert_eq!(results(&folder).rows.len(), 6);
     folder.run("experiment e.toml -q --progress none").success().stdout("").stderr("");
@@ -93,8 +95,10 @@ fn faults_have_their_place_and_exit_code() {
         (EXPERIMENT.replace("width = 24", "width = 0"), 2, "e.toml:4:19: image.width is 0; expected 1 to 65536"),
         (EXPERIMENT.replace("['plain']", "['plian']"), 2, "did you mean `plain`?"),
         (EXPERIMENT.replace("scene.txt", "none.txt"), 2, "e.toml:7:8: "),
-        (EXPERIMENT.replace("scene.txt", "e.toml"), 3, "e.toml"),
+        (EXPERIMENT.replace("scene.txt", "e.toml"), 2, "e.toml:7:8: experiments render the thesis' model only"),
+        (EXPERIMENT.replace("scene.txt", "bad.txt"), 3, "bad.txt"),
     ];
+    folder.write("bad.txt", "P SPH|C{}");
     for (text, code, expected) in cases {
         folder.write("e.toml", text);
         let said = stderr(&folder.run("experiment e.toml").code(code));
@@ -103,13 +107,13 @@ fn faults_have_their_place_and_exit_code() {
         folder.write("e.toml", EXPERIMENT);
     }
     assert!(stderr(&folder.run("experiment none.toml").code(2)).contains("none.toml"));
-    assert!(stderr(&folder.run("experiment e.toml --only nobody").code(2)).contains("expected some of room, cuts"));
+    assert!(stderr(&folder.run("experiment e.toml --only nobody").code(2)).contains("expected one of room, cuts"));
     folder.write("taken", "");
     assert!(stderr(&folder.run("experiment e.toml -o taken").code(1)).contains("taken"));
     fs::create_dir_all(folder.at("out/small")).unwrap();
     folder.write("out/small/results.jsonl", "nonsense\n");
     for command in ["experiment e.toml", "experiment e.toml --dry-run"] {
-        assert!(stderr(&folder.run(command).code(3)).contains("results.jsonl:1: this is no record"));
+        assert!(stderr(&folder.run(command).code(3)).contains("results.jsonl:1: this is not a record"));
     }
 }
 
@@ -201,11 +205,11 @@ mod stopped {
             stderr.read_to_string(&mut said).unwrap();
             assert_eq!(child.wait().unwrap().code(), Some(130), "{said}");
             assert!(said.contains("1 of 6 jobs are finished in out/small/results.jsonl"), "{said}");
-            assert!(said.contains("the same command goes on"), "{said}");
+            assert!(said.contains("the same command continues"), "{said}");
             assert_eq!(results(&folder).rows.len(), 1);
         }
         let said = stdout(&folder.run("experiment e.toml").success());
-        assert!(said.contains("rendered     5 jobs; 1 were finished before"), "{said}");
+        assert!(said.contains("rendered     5 jobs; 1 had been finished before"), "{said}");
     }
 
     #[test]

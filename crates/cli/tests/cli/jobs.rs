@@ -102,5 +102,16 @@ fn bad_jobs_are_bad_usage() {
     // What is not there is a scene that is not there, unless it is said to be a job.
     folder.run("render none.toml").code(3);
     folder.run("render --job none.toml").code(2);
+    folder.run("render scene.txt --job none.toml").code(2);
     folder.run("render scene.txt --job scene.txt").code(2);
+}
+
+#[test]
+fn a_scene_that_is_not_there_is_told_as_one() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.at("folder.toml")).unwrap();
+    for name in ["none", "none.txt", "none.toml", "none.TOML", "none/a.toml", "folder.toml"] {
+        let said = stderr(&folder.run(&format!("render {name}")).code(3));
+        assert!(said.contains("cannot read the scene") && said.contains(name), "{name}: {said}");
+    }
 }

@@ -98,14 +98,22 @@ fn scenes_of_the_thesis_can_be_rendered_with_it_and_not_the_other_way_round() {
         );
     }
     assert_eq!(folder.run("render scene.txt --gather stochastic").get_output().status.code(), Some(2));
-    for arguments in [
-        "ball.toml --caustics-radius 2",
-        "ball.toml --max-depth 3",
-        "scene.txt --vpls 10",
-        "scene.txt --integrator path",
+    for (arguments, expected) in [
+        ("ball.toml --caustics-radius 2", "--caustics-radius has no meaning in the physical model"),
+        ("ball.toml --max-depth 3", "--max-depth has no meaning in the physical model"),
+        ("ball.toml --no-second-pass", "--no-second-pass has no meaning in the physical model"),
+        ("ball.toml --bloom --ao-step 3", "--ao-step, --bloom have no meaning in the physical model"),
+        ("ball.toml --reproduce", "--reproduce has no meaning in the physical model"),
+        ("ball.toml --write-vpls v.csv", "--write-vpls has no meaning in the physical model"),
+        ("scene.txt --vpls 10", "--vpls has no meaning in the thesis' model"),
+        ("scene.txt --integrator path", "--integrator has no meaning in the thesis' model"),
+        ("scene.txt --model physical --threshold 1", "leave it out, or render with --model thesis"),
+        ("scene.txt --gather auto", "--gather is auto; expected `all`, `lightcuts` or `lightcuts-exhaustive`"),
+        ("ball.toml --samples 0", "--samples is 0; expected 1 to 16777216"),
+        ("scene.txt --size 0x5", "the width of --size is 0; expected 1 to 65536"),
     ] {
         let said = stderr(&folder.run(&format!("render {arguments}")).code(2));
-        assert!(said.contains("has no meaning in the"), "{arguments}: {said}");
+        assert!(unwrapped(&said).contains(expected), "{arguments}: {said}");
     }
     let said = stdout(&folder.run("info ball.toml").success());
     assert!(said.contains("physical") && said.contains("1 emissive surface"), "{said}");
@@ -190,6 +198,43 @@ fn warnings_are_shown_beside_errors() {
     folder.write("bad.toml", SCENE.to_owned() + mesh + "[[object]]\ntype = 'cone'\n");
     let said = stderr(&folder.run("render bad.toml").code(3));
     assert!(said.contains("`none.mtl` was not found") && said.contains("unknown type `cone`"), "{said}");
+}
+
+/// A message on one line.
+fn unwrapped(said: &str) -> String {
+    said.replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn keys_of_the_other_model_in_a_job_are_told_with_their_line() {
+    let folder = folder();
+    folder.write("glow.toml", "[bloom]\nenabled = true\n");
+    folder.write("limit.toml", "[image]\nwidth = 8\n[physical]\ntime-limit = 3\n");
+    for (arguments, expected) in [
+        ("ball.toml --job glow.toml", "glow.toml:2:11: `bloom.enabled` has no meaning in the physical model of light"),
+        ("scene.txt --job limit.toml", "limit.toml:4:14: `physical.time-limit` has no meaning in the thesis' model"),
+    ] {
+        let said = stderr(&folder.run(&format!("render {arguments}")).code(2));
+        assert!(unwrapped(&said).contains(expected), "{arguments}: {said}");
+    }
+    // A picture's job holds what its model knows; its size and filter can be lent to a scene of the other one.
+    folder.run("render scene.txt --size 9x7 --bloom -q -o thesis.exr").success();
+    let said = stderr(&folder.run("render ball.toml --job thesis.exr").code(2));
+    assert!(unwrapped(&said).contains("run.model is thesis, but the scene is of the physical model"), "{said}");
+    folder.run("render ball.toml --job thesis.exr --model physical -q -o lent.exr").success();
+    let job = folder.job_of("lent.exr");
+    assert!(job.contains("width = 9") && job.contains("[physical]") && !job.contains("bloom"), "{job}");
+    assert!(!folder.job_of("thesis.exr").contains("[physical]"));
+    folder.run("render thesis.exr -q -o again.exr").success();
+    assert!(folder.bytes("thesis.exr") == folder.bytes("again.exr"));
+}
+
+#[test]
+fn a_scene_without_its_first_line_is_not_taken_for_a_job() {
+    let folder = folder();
+    folder.write("headless.toml", SCENE.split_once('\n').unwrap().1);
+    let said = stderr(&folder.run("render headless.toml").code(3));
+    assert!(said.contains("format") && !said.contains("unknown key `camera`"), "{said}");
 }
 
 #[test]

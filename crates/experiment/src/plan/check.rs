@@ -51,8 +51,8 @@ pub(super) fn document(source: &Source, document: &Document) -> Result<(), PlanE
     points(source, document)
 }
 
-/// A name is a part of file names: letters, digits, `.`, `-` and `_`, beginning with a letter or digit. Two `-` in a row
-/// separate names there.
+/// A name is a part of file names: letters, digits, `.`, `-` and `_`, beginning with a letter or digit. Two `-` in a
+/// row separate names there.
 pub(super) fn word(source: &Source, path: &str, name: &str) -> Result<(), PlanError> {
     let fits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_');
     let begins = name.starts_with(|c: char| c.is_ascii_alphanumeric());
@@ -94,7 +94,7 @@ fn metrics(source: &Source, keys: Option<&[String]>) -> Result<(), PlanError> {
     }
 }
 
-/// Fails on the second of two equal names; names are parts of file names, and some systems do not tell cases apart.
+/// Fails on the second of two equal names; names are parts of file names, and some systems ignore case.
 fn names<'a>(source: &Source, what: &str, names: impl Iterator<Item = &'a str>) -> Result<(), PlanError> {
     let mut taken = HashSet::new();
     for (i, name) in names.enumerate() {

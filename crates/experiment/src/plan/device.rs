@@ -1,4 +1,4 @@
-//! Devices of configurations: what is asked for, and whether it can be had.
+//! Devices of configurations: which are requested, and whether they are available.
 
 use super::file::Document;
 use lightcuts::PerStation;

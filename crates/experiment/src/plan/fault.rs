@@ -48,7 +48,7 @@ pub struct TextFault {
     pub label: String,
 }
 
-/// A named TOML text in which places are told as paths: `scene.0.file`.
+/// A named TOML text in which places are given as paths: `scene.0.file`.
 #[derive(Debug, Clone)]
 pub(super) struct Source {
     pub(super) file: String,
@@ -62,7 +62,7 @@ impl Source {
         PlanError::Text(Box::new(TextFault { file: self.file.clone(), text: self.text.clone(), span, message, label }))
     }
 
-    /// A fault at `path`; `expected` goes on after the word.
+    /// A fault at `path`; `expected` completes the sentence after that word.
     pub(super) fn fault(&self, path: &str, message: impl Into<String>, expected: &str) -> PlanError {
         let message = format!("{}; expected {expected}", message.into());
         self.toml(TomlFault { span: self.span(path), message, label: format!("expected {expected}") })

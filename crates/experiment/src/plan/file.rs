@@ -5,7 +5,7 @@ use super::{check, device, section};
 use crate::layout::Section;
 use lightcuts::Settings;
 use lightcuts::gpu::DeviceChoice;
-use lightcuts::rendering::{TomlFault, value_at};
+use lightcuts::rendering::{Model, Scope, TomlFault, keys_of, value_at};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::io::Read;
@@ -55,6 +55,17 @@ pub(super) struct Document {
     /// Read table by table, see [`section`].
     #[serde(default)]
     pub(super) section: Vec<IgnoredAny>,
+}
+
+impl Document {
+    /// Every table of settings with its place.
+    fn settings_tables(&self) -> impl Iterator<Item = (String, &Table)> {
+        let scenes = self.scene.iter().enumerate().map(|(i, table)| (format!("scene.{i}.settings"), &table.settings));
+        let configurations = self.configuration.iter().enumerate();
+        let configurations = configurations.map(|(i, table)| (format!("configuration.{i}.settings"), &table.settings));
+        let points = self.point.iter().enumerate().map(|(i, table)| (format!("point.{i}.settings"), &table.settings));
+        std::iter::once(("settings".to_owned(), &self.settings)).chain(scenes).chain(configurations).chain(points)
+    }
 }
 
 /// `published`.
@@ -189,22 +200,35 @@ impl ExperimentFile {
 
 /// Checks keys and kinds of values of every table of settings; ranges hold or not for all tables together.
 fn check_settings(source: &Source, document: &Document) -> Result<(), PlanError> {
-    let several = |what: &'static str, count: usize| (0..count).map(move |i| format!("{what}.{i}.settings"));
-    let places = std::iter::once("settings".to_owned())
-        .chain(several("scene", document.scene.len()))
-        .chain(several("configuration", document.configuration.len()))
-        .chain(several("point", document.point.len()));
-    for place in places {
+    for (place, table) in document.settings_tables() {
         let Some(value) = value_at(&source.text, &place) else { continue };
         let read = Settings::deserialize(ValueDeserializer::from(value));
-        let seed = read.map_err(|error| source.toml(TomlFault::new(&error)))?.run.seed;
-        let path = format!("{place}.run.seed");
+        let run = read.map_err(|error| source.toml(TomlFault::new(&error)))?.run;
+        check_model(source, &place, table, run.model)?;
+        let (seed, path) = (run.seed, format!("{place}.run.seed"));
         // Every render is made with each of the seeds; another one here would be without effect.
         if source.has(&path) && document.seeds != [seed] {
             return Err(source.fault(&path, format!("run.seed is {seed}"), &format!("`seeds = [{seed}]` at the top")));
         }
     }
     Ok(())
+}
+
+/// Fails if the table of settings at `place` asks for another model of light than the thesis', or sets what that lacks:
+/// nothing of it would come to pass.
+fn check_model(source: &Source, place: &str, table: &Table, model: Model) -> Result<(), PlanError> {
+    if model != Model::Thesis {
+        let message = format!("run.model is {}, but experiments render the thesis' model only", model.name());
+        return Err(source.fault(&format!("{place}.run.model"), message, "no run.model, or `thesis`"));
+    }
+    let is_foreign = |key: &&String| Scope::of(key).is_some_and(|scope| !scope.includes(Model::Thesis));
+    match keys_of(table).iter().find(is_foreign) {
+        None => Ok(()),
+        Some(key) => {
+            let message = format!("`{key}` has no meaning here: experiments render the thesis' model only");
+            Err(source.fault(&format!("{place}.{key}"), message, "settings of the thesis' model"))
+        }
+    }
 }
 
 fn read_text(path: &Path) -> Result<String, String> {

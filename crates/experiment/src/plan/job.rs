@@ -17,8 +17,8 @@ use std::ops::Range;
 /// A render of the experiment.
 #[derive(Debug, Clone)]
 pub struct PlannedJob {
-    /// Hash of everything that decides the picture, the row's comparisons and the conditions of its time; 64 hexadecimal
-    /// digits. Not of paths, dates, or the program's version.
+    /// Hash of everything that decides the picture, the row's comparisons and the conditions of its time; 64
+    /// hexadecimal digits. Not of paths, dates, or the program's version.
     pub hash: String,
     /// Number of the scene in the plan.
     pub scene: usize,
@@ -52,7 +52,7 @@ impl PlannedJob {
         }
     }
 
-    /// What the header tells of it.
+    /// Its entry in the header.
     pub(super) fn info(&self) -> JobInfo {
         JobInfo {
             job: self.hash.clone(),
@@ -80,8 +80,8 @@ pub(super) struct Conditions<'a> {
     pub(super) options: &'a MetricOptions,
 }
 
-/// All jobs: run 1 of everything, then run 2, ...; in each run scene by scene, what is rendered at the last point alone,
-/// then point by point; seed by seed.
+/// All jobs: run 1 of everything, then run 2, ...; in each run scene by scene, what is rendered at the last point
+/// alone, then point by point; seed by seed.
 pub(super) fn all(
     file: &ExperimentFile,
     scenes: &[PlannedScene],

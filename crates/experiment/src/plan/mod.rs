@@ -1,7 +1,7 @@
 //! From an experiment file to every render that it asks for.
 //!
-//! [`ExperimentFile::read`] checks the text; [`Plan::new`] reads the scenes, lays the settings over each other and gives
-//! each job its hash. Nothing is rendered or written here.
+//! [`ExperimentFile::read`] checks the text; [`Plan::new`] reads the scenes, lays the settings over each other and
+//! gives each job its hash. Nothing is rendered or written here.
 
 mod check;
 mod device;
@@ -31,7 +31,7 @@ use std::path::PathBuf;
 /// Every render of an experiment, in order.
 #[derive(Debug)]
 pub struct Plan {
-    /// What the results tell of the experiment.
+    /// The description of the experiment in the results.
     pub header: Header,
     /// The scenes.
     pub scenes: Vec<PlannedScene>,

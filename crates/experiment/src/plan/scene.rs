@@ -9,6 +9,13 @@ use std::cell::RefCell;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+/// What is said of a scene in TOML.
+const OF_ANOTHER_MODEL: &str =
+    "experiments render the thesis' model only, and a scene in TOML is of the physical model";
+
+/// What was expected where the scene cannot be read.
+const A_SCENE: &str = "a scene, relative to this file";
+
 /// A scene of the experiment, ready to be rendered.
 #[derive(Debug)]
 pub struct PlannedScene {
@@ -33,7 +40,9 @@ impl PlannedScene {
         let options = ImportOptions { search_paths: search_paths.to_vec(), ..ImportOptions::default() };
         let path = file.find(&table.file);
         let load = |path: &Path, key: &str| {
-            lightcuts::load(path, &options).map_err(|error| import_error(file, &format!("scene.{i}.{key}"), error))
+            let place = format!("scene.{i}.{key}");
+            refuse_toml(file, &place, path)?;
+            lightcuts::load(path, &options).map_err(|error| import_error(file, &place, error))
         };
         let Some(stand_in) = &table.stand_in else {
             return Self::new(table, path.clone(), Vec::new(), load(&path, "file")?);
@@ -58,10 +67,22 @@ impl PlannedScene {
     }
 }
 
+/// Fails for a scene in TOML, named at `place`: only the physical model renders those.
+fn refuse_toml(file: &ExperimentFile, place: &str, path: &Path) -> Result<(), PlanError> {
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        return Ok(());
+    }
+    let (message, expected) = match std::fs::metadata(path) {
+        Ok(_) => (OF_ANOTHER_MODEL.to_owned(), "a scene in the thesis' text format (.txt)"),
+        Err(error) => (format!("cannot read the scene {}: {error}", path.display()), A_SCENE),
+    };
+    Err(file.source.fault(place, message, expected))
+}
+
 /// A scene file that is not there is a fault of the experiment; one that is wrong is not.
 fn import_error(file: &ExperimentFile, place: &str, error: ImportError) -> PlanError {
     match error {
-        ImportError::Unreadable(error) => file.source.fault(place, error.to_string(), "a scene, relative to this file"),
+        ImportError::Unreadable(error) => file.source.fault(place, error.to_string(), A_SCENE),
         error => PlanError::Scene(Box::new(error)),
     }
 }

@@ -15,8 +15,8 @@ pub(super) struct Tables {
     pub(super) point: Option<usize>,
 }
 
-/// Recommendations of the scene, under `[settings]`, under those of the scene, the configuration and the point, under the
-/// seed; checked, so that rendering cannot fail.
+/// Recommendations of the scene, under `[settings]`, under those of the scene, the configuration and the point, under
+/// the seed; checked, so that rendering cannot fail.
 pub(super) fn resolve(
     file: &ExperimentFile,
     tables: Tables,
@@ -33,7 +33,7 @@ pub(super) fn resolve(
     let mut settings: Settings =
         table.try_into().map_err(|error: toml::de::Error| unexpected(&TomlFault::new(&error).message))?;
     settings.run.seed = seed;
-    // Experiments render scenes of the thesis' model.
+    // No table names another model: that was checked when the file was read.
     settings.validate().and_then(|()| settings.require_model(Model::Thesis)).map_err(|error| {
         let places = layers.iter().rev().map(|(place, _)| format!("{place}.{}", error.name));
         let culprit = places.into_iter().find(|place| file.source.has(place));

@@ -1,4 +1,4 @@
-//! Devices in words, and which time is told of which.
+//! Devices in words, and which time is shown for which.
 
 use super::document::Notes;
 use super::measured::{Found, seconds};
@@ -17,8 +17,8 @@ pub(super) fn is_software(device: &DeviceInfo) -> bool {
     device.kind == DeviceKind::SoftwareGpu.name()
 }
 
-/// The time that is told of a render: of the CPU processor seconds over all threads, which suffer less from other programs;
-/// of a GPU elapsed seconds, for the processor only waits for it.
+/// The time that is shown for a render: for the CPU, CPU seconds over all threads, which suffer less from other
+/// programs; of a GPU elapsed seconds, for the processor only waits for it.
 pub(super) fn told_seconds(row: &Row, time: Time) -> f64 {
     let (processor_s, elapsed_s) = seconds(row, time);
     if is_cpu(&row.device) { processor_s } else { elapsed_s }
@@ -40,7 +40,7 @@ pub(super) fn named(device: &DeviceInfo) -> String {
     format!("{} ({kind}{threads})", device.name)
 }
 
-/// What to know of figures that a GPU made, for a note.
+/// A note on figures that a GPU produced.
 pub(super) fn note(found: &Found<'_>) -> Option<String> {
     let device = found.rows().iter().map(|row| &row.device).find(|device| !is_cpu(device))?;
     Some(if is_software(device) {
@@ -56,4 +56,5 @@ pub(super) fn mark(notes: &mut Notes, found: &Found<'_>) -> Option<usize> {
 }
 
 /// What a software driver is.
-pub(super) const SLOW: &str = "That is no graphics card but a driver which computes on the processor, and is slower than the CPU renderer itself.";
+pub(super) const SLOW: &str =
+    "That is not a graphics card but a driver that runs on the processor, and is slower than the CPU renderer itself.";

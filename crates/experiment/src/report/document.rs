@@ -11,7 +11,7 @@ pub(super) struct Document {
     pub(super) description: String,
     /// Terms with their texts.
     pub(super) provenance: Vec<(String, String)>,
-    /// What a reader must know before all else.
+    /// Notes that stand at the top of the report.
     pub(super) notices: Vec<Notice>,
     pub(super) parts: Vec<Part>,
 }
@@ -249,7 +249,7 @@ pub(super) struct Pair {
     pub(super) left: Picture,
     /// The right one.
     pub(super) right: Picture,
-    /// Their FLIP map with its mean, or that against another reference, whose title is told.
+    /// Their FLIP map with its mean, or the one against another reference, with its title.
     pub(super) map: Option<Map>,
 }
 

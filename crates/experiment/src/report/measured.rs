@@ -19,7 +19,7 @@ pub(super) struct Measured<'a> {
 pub(super) enum Found<'a> {
     /// Its rows; never empty.
     Rows(Vec<&'a Row>),
-    /// There is no such device, for the reason told.
+    /// There is no such device, for this reason.
     Absent(&'a str),
     /// It is planned, but was not rendered yet.
     Pending,
@@ -142,7 +142,7 @@ impl<'a> Found<'a> {
     pub(super) fn note(&self) -> Option<String> {
         match self {
             Self::Absent(reason) => Some(format!("Absent: {reason}.")),
-            Self::Pending => Some("Not rendered yet; lightcuts experiment goes on where it stopped.".to_owned()),
+            Self::Pending => Some("Not rendered yet; lightcuts experiment continues where it stopped.".to_owned()),
             Self::Rows(_) | Self::Unplanned => None,
         }
     }

@@ -56,7 +56,7 @@ pub enum ReportError {
         /// The file.
         path: PathBuf,
     },
-    /// A section asks for what there is not.
+    /// A section refers to something that does not exist.
     #[error("{}: section `{section}`: {reason}", path.display())]
     Section {
         /// The file.
@@ -124,7 +124,7 @@ impl Report {
         Self { files, missing: gallery.missing() }
     }
 
-    /// Writes every file into a folder, which is made if absent, each whole or not at all; returns their paths.
+    /// Writes every file into a folder, which is created if absent, each atomically; returns their paths.
     pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
         let mut written = Vec::new();
         for (name, content) in &self.files {

@@ -1,7 +1,7 @@
 //! Markdown of experiment files as HTML that can do no harm.
 //!
-//! HTML in it becomes visible text; pictures become their descriptions, for the page loads nothing; links lead to the web
-//! or within the page.
+//! HTML in it becomes visible text; pictures become their descriptions, for the page loads nothing; links lead to the
+//! web or within the page.
 
 use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
 

@@ -33,7 +33,7 @@ pub(super) fn terms(measured: &Measured<'_>) -> Vec<(String, String)> {
     terms.into_iter().map(|(term, text)| (term.to_owned(), text)).collect()
 }
 
-/// What a reader must know before all else.
+/// Notes that stand at the top of the report.
 pub(super) fn notices(measured: &Measured<'_>) -> Vec<Notice> {
     let all = [mixed(measured), software(measured), faulty(measured), changed(measured), unfinished(measured)];
     all.into_iter().flatten().collect()
@@ -56,8 +56,8 @@ fn mixed(measured: &Measured<'_>) -> Option<Notice> {
     (!mixed.is_empty()).then(|| Notice::warning(text).with_items(mixed.into_iter().collect()))
 }
 
-/// The devices of which there is one if all is well: the CPU for all its configurations, a GPU for each of its own, which
-/// may ask for different ones.
+/// The devices of which there is one if all is well: the CPU for all its configurations, a GPU for each of its own,
+/// which may ask for different ones.
 fn devices<'a>(rows: &[&'a Row]) -> BTreeMap<Option<&'a str>, BTreeSet<String>> {
     let mut devices: BTreeMap<_, BTreeSet<String>> = BTreeMap::new();
     for row in rows {
@@ -91,7 +91,7 @@ fn faulty(measured: &Measured<'_>) -> Option<Notice> {
     (!items.is_empty()).then(|| Notice::warning(text).with_items(items))
 }
 
-/// Rows of a program that no revision tells.
+/// Rows of a program without a known revision.
 fn changed(measured: &Measured<'_>) -> Option<Notice> {
     let text = "Some rows come from a program that was built from changed sources: its revision does not tell all.";
     let is_dirty = measured.rows().iter().any(|row| row.revision.ends_with("-dirty"));
@@ -102,7 +102,7 @@ fn changed(measured: &Measured<'_>) -> Option<Notice> {
 fn unfinished(measured: &Measured<'_>) -> Option<Notice> {
     let (done, planned) = (measured.rows().len(), measured.header.jobs.len());
     let text = format!(
-        "{} of {planned} planned renders are not done yet; lightcuts experiment goes on where it stopped.",
+        "{} of {planned} planned renders are not done yet; lightcuts experiment continues where it stopped.",
         planned.saturating_sub(done)
     );
     (done < planned).then(|| Notice::warning(text))

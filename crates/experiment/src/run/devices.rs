@@ -20,8 +20,8 @@ impl<'w> Devices<'w> {
         Self { plan, opened: Vec::new(), warm: BTreeSet::new() }
     }
 
-    /// The device of a job, opened unless it is; and whether it is a card that has not rendered this configuration yet. Then
-    /// its driver compiles programs, and the size of the submissions is still to be found.
+    /// The device of a job, opened unless it is; and whether it is a card that has not rendered this configuration yet.
+    /// Then its driver compiles programs, and the size of the submissions is still to be found.
     pub(super) fn get(
         &mut self,
         job: &'w PlannedJob,
@@ -56,7 +56,7 @@ pub(super) fn warm_up(job: &PlannedJob, world: &World, fleet: &Fleet<'_>, watch:
     Ok(())
 }
 
-/// Passes nothing on but the wish to stop, and what must be told.
+/// Forwards only cancellation and notes.
 struct Untold<'a>(&'a dyn Watch);
 
 impl Monitor for Untold<'_> {

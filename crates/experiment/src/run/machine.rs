@@ -5,7 +5,8 @@ use lightcuts::device::processor_name;
 use lightcuts::gpu::{Fleet, GpuDevice};
 use std::time::SystemTime;
 
-/// Git revision that the program was built from, with `-dirty` if its sources were changed; `unknown` outside a checkout.
+/// Git revision that the program was built from, with `-dirty` if its sources were changed; `unknown` outside a
+/// checkout.
 pub const fn revision() -> &'static str {
     env!("LIGHTCUTS_REVISION")
 }

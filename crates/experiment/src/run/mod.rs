@@ -66,7 +66,7 @@ pub struct Outcome {
     pub interrupted: bool,
 }
 
-/// Why an experiment cannot go on. Rows that are finished stay.
+/// Why an experiment cannot continue. Finished rows are kept.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The results cannot be read or written.
@@ -160,7 +160,8 @@ pub fn finished(plan: &Plan, directory: &Path, results: &Results) -> Vec<Option<
 }
 
 impl<'a> Runner<'a> {
-    /// Opens `directory`, made if absent, locks its results, and adds the plan's header unless it is the last one there.
+    /// Opens `directory`, made if absent, locks its results, and adds the plan's header unless it is the last one
+    /// there.
     pub fn open(plan: &'a Plan, directory: &Path) -> Result<Self, RunError> {
         let images = directory.join(IMAGES);
         std::fs::create_dir_all(&images).map_err(|source| RunError::Folder { path: images, source })?;
@@ -172,8 +173,8 @@ impl<'a> Runner<'a> {
         Ok(Self { plan, directory: directory.to_owned(), file, rows })
     }
 
-    /// Renders those of the jobs `selection`, in the plan's order, that are not finished. Every reference of a job must be
-    /// finished or selected.
+    /// Renders those of the jobs `selection`, in the plan's order, that are not finished. Every reference of a job must
+    /// be finished or selected.
     pub fn run(&mut self, selection: &[usize], texts: &Texts<'_>, watch: &dyn Watch) -> Result<Outcome, RunError> {
         let plan = self.plan;
         let todo: Vec<usize> = selection.iter().copied().filter(|&i| self.rows[i].is_none()).collect();

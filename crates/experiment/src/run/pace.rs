@@ -16,7 +16,7 @@ pub(super) struct Pace {
 type Alike = (Option<String>, Option<String>, Option<String>);
 
 impl Pace {
-    /// From rows of earlier sessions, which do not tell the time that comparisons took.
+    /// From rows of earlier sessions, which do not include the time of comparisons.
     pub(super) fn of<'r>(rows: impl Iterator<Item = &'r Row>) -> Self {
         let mut pace = Self::default();
         for row in rows {

@@ -14,8 +14,8 @@ use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Where the jobs of one scene are rendered: the threads, the scene's world, made when it is needed, the devices, and who
-/// watches.
+/// Where the jobs of one scene are rendered: the threads, the scene's world, made when it is needed, the devices, and
+/// who watches.
 pub(super) struct Studio<'a, 'w> {
     pub(super) plan: &'w Plan,
     pub(super) directory: PathBuf,
@@ -33,7 +33,8 @@ struct Stored {
 }
 
 impl<'w> Studio<'_, 'w> {
-    /// Renders job number `i` and writes its pictures; `None` if the watch stopped it. `rows` are those that are finished.
+    /// Renders job number `i` and writes its pictures; `None` if the watch stopped it. `rows` are those that are
+    /// finished.
     pub(super) fn render(&mut self, i: usize, rows: &[Option<Row>]) -> Result<Option<Row>, RunError> {
         if self.watch.cancelled() {
             return Ok(None);

@@ -209,3 +209,33 @@ fn scenes_are_there_and_sound() {
     let wrong = folder.try_plan(&format!("{HEAD}{PAIR}")).unwrap_err().to_string();
     assert!(wrong.contains("scene.txt:1:"), "{wrong}");
 }
+
+#[test]
+fn the_physical_model_is_refused_wherever_it_is_asked_for() {
+    complaints(&[
+        (
+            "[[point]]\nname = 'x'\nsettings = { run = { model = 'physical' } }",
+            2,
+            "run.model is physical, but experiments render the thesis' model only",
+        ),
+        (
+            "[[configuration]]\nname = 'b'\n[configuration.settings.physical]\nvpls = 100",
+            3,
+            "`physical.vpls` has no meaning here: experiments render the thesis' model only",
+        ),
+        (
+            "[[configuration]]\nname = 'b'\nsettings = { gather = { strategy = 'stochastic' } }",
+            2,
+            "in the thesis' model",
+        ),
+    ]);
+    let folder = Folder::new();
+    folder.write(
+        "b.toml",
+        "format = 'lightcuts-scene'\nversion = 1\n[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\n",
+    );
+    let found = complaint(&folder.try_plan(&with("").replace("scene.txt", "b.toml")).unwrap_err());
+    assert!(found.starts_with("a.toml:6:8: experiments render the thesis' model only"), "{found}");
+    let found = complaint(&folder.try_plan(&with("").replace("scene.txt", "none.toml")).unwrap_err());
+    assert!(found.starts_with("a.toml:6:8: cannot read "), "{found}");
+}

@@ -58,11 +58,11 @@ fn malformed_lines_are_told_by_number() {
     let whole = fs::read_to_string(&path).unwrap();
     let lines: Vec<&str> = whole.lines().collect();
     let cases = [
-        (format!("{}\nnonsense\n{}\n", lines[0], lines[1]), "results.jsonl:2: this is no record"),
-        (format!("{}\n\n", lines[0]), "results.jsonl:2: this is no record"),
+        (format!("{}\nnonsense\n{}\n", lines[0], lines[1]), "results.jsonl:2: this is not a record"),
+        (format!("{}\n\n", lines[0]), "results.jsonl:2: this is not a record"),
         (whole.replacen("\"format\":1", "\"format\":99", 1), "results.jsonl:1: the format is 99"),
         ("{\"kind\":\"header\",\"format\":2,\"new\":true}\n".to_owned(), "results.jsonl:1: the format is 2"),
-        (whole.replacen("\"run\":1", "\"run\":\"one\"", 1), "results.jsonl:2: this is no record"),
+        (whole.replacen("\"run\":1", "\"run\":\"one\"", 1), "results.jsonl:2: this is not a record"),
     ];
     for (text, expected) in cases {
         fs::write(&path, text).unwrap();

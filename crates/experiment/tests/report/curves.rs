@@ -46,7 +46,8 @@ fn values_are_times_per_pixel_of_choosing_and_shading() {
     let report = crossing().with("c", section(Quantity::TimePerPixel)).report();
     let row = report.row("c", &[("configuration", "cpu"), ("point", "800")]);
     assert_eq!(row["vpl_count"], "800");
-    // The first run's times have a factor of 0.9; light tree and second pass are three quarters of what follows the first.
+    // The first run's times have a factor of 0.9; light tree and second pass are three quarters of what follows the
+    // first.
     assert_near(number(&row, "value"), 1e6 * 8.0 * 0.75 * 0.9 / (96.0 * 96.0));
     assert_eq!(report.table("c").len(), 8);
 }

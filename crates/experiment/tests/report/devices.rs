@@ -46,10 +46,10 @@ fn a_software_driver_is_called_one() {
     let report = results.report();
     let markdown = report.text("report.md");
     for expected in [
-        "llvmpipe rendered as a GPU. That is no graphics card",
+        "llvmpipe rendered as a GPU. That is not a graphics card",
         "its times tell nothing of GPUs",
         "Test Processor (CPU, 1 thread); llvmpipe (software GPU)",
-        "Rendered on llvmpipe (software GPU): elapsed seconds. That is no graphics card but a driver which computes on the \
+        "Rendered on llvmpipe (software GPU): elapsed seconds. That is not a graphics card but a driver that runs on the \
          processor, and is slower than the CPU renderer itself.",
         "| GPU <sup>1, 2</sup> |",
     ] {

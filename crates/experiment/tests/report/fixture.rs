@@ -1,4 +1,5 @@
-//! Hand-made results of a small experiment: three scenes, two configurations of a CPU and two of an absent GPU, three runs.
+//! Hand-made results of a small experiment: three scenes, two configurations of a CPU and two of an absent GPU, three
+//! runs.
 
 use lightcuts::image::{Image, Transfer, write_png};
 use lightcuts::rendering::PassTime;
@@ -17,7 +18,8 @@ use tempfile::TempDir;
 /// Scenes with the factor on all times.
 pub(crate) const SCENES: [(&str, &str, f64); 3] =
     [("simple", "Simple", 1.0), ("venus", "Venus", 10.0), ("galleon", "Galleon", 40.0)];
-/// Configurations of the CPU with first pass and second pass in processor seconds in the scene Simple, mean of the runs.
+/// Configurations of the CPU with first pass and second pass in processor seconds in the scene Simple, mean of the
+/// runs.
 pub(crate) const TIMES: [(&str, f64, f64); 2] = [("cpu", 0.04, 4.0), ("cpu-lightcuts", 0.05, 8.0)];
 /// What the runs' times are multiplied by.
 pub(crate) const FACTORS: [f64; 3] = [0.9, 1.0, 1.1];
@@ -75,8 +77,8 @@ impl Results {
         self.header.jobs = self.rows.iter().map(info).collect();
     }
 
-    /// With rows of a GPU for both of its configurations: processor seconds are half of the CPU's for all VPLs, and as many
-    /// with lightcuts.
+    /// With rows of a GPU for both of its configurations: processor seconds are half of the CPU's for all VPLs, and as
+    /// many with lightcuts.
     pub(crate) fn with_gpu(mut self, kind: &str, name: &str) -> Self {
         for (scene, _, factor) in SCENES {
             for (configuration, first, second) in [("gpu", 0.02, 2.0), ("gpu-lightcuts", 0.05, 8.0)] {

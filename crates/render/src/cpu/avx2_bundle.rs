@@ -10,9 +10,9 @@ use super::avx2_packet::{Packet, meet, meet_any, sphere_from};
 use super::avx2_trace::{
     Wide3, WideRay, any_hit, block, closest_hit, lanes, load, nearer_hit, other_hit, splat3, spread, store,
 };
+use super::half_spaces::FEW;
 use super::stack::Stack;
 use super::tracer::Tracer;
-use super::walls::FEW;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square, min_determinant};
 use lightcuts_kernel::ray::{Hit, NONE, Ray};

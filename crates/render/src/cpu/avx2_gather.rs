@@ -6,9 +6,9 @@ use super::avx2_bundle::ALL;
 use super::avx2_shadows::{MOST, Shadow, Source, trace};
 use super::avx2_trace::{Wide3, dot, load, load3, splat3, spread, store, sub};
 use super::gather::{Blocks, Candidates, Decisions, Gathered, Receiver};
+use super::half_spaces::Shared;
 use super::stack::Stack;
 use super::tracer::Tracer;
-use super::walls::Shared;
 use crate::light_node::{LANES, LightNode};
 use glam::Vec3;
 use lightcuts_kernel::light_tree::BOUND_MARGIN;
@@ -142,11 +142,11 @@ pub(super) fn evaluate(
     threshold: Option<f32>,
     at: &Receiver,
 ) -> Gathered {
-    let Blocks { vpls, walls } = blocks;
+    let Blocks { vpls, half_spaces } = blocks;
     let (point, normal, diffuse) = (splat3(at.point), splat3(at.normal), splat3(at.diffuse));
-    let outlook = walls.outlook(at.normal);
+    let facing = half_spaces.facing(at.normal);
     let mut source = Source::new();
-    source.set(tracer, walls, (point, _mm256_set1_ps(at.epsilon)));
+    source.set(tracer, half_spaces, (point, _mm256_set1_ps(at.epsilon)));
     let mut batch = Batch::new();
     let mut sums = [_mm256_setzero_ps(); 3];
     let mut finish = |batch: &mut Batch, size: usize| {
@@ -162,7 +162,7 @@ pub(super) fn evaluate(
     let (mut all_chosen, mut shadow_rays, mut size) = (0, 0, 0);
     for &Candidates { block: number, lanes, certain } in candidates {
         let (lanes, tested) = (u32::from(lanes), threshold.filter(|_| !certain));
-        if tested.is_none() && walls.is_turned_away(number, outlook) {
+        if tested.is_none() && half_spaces.is_turned_away(number, facing) {
             all_chosen += lanes.count_ones();
             continue;
         }
@@ -170,7 +170,7 @@ pub(super) fn evaluate(
         let ways = Ways::new(sub(load3(&block.position), point), normal, load3(&block.direction));
         let chosen = lanes & tested.map_or(ALL, |threshold| relevant(load(&block.intensity), &ways, threshold));
         let open = _mm256_movemask_ps(ways.facing(ALL)) as u32 & chosen;
-        let shadow = Shadow { block: number, ..Shadow::new(&ways, open, source.shared(walls.sides(number))) };
+        let shadow = Shadow { block: number, ..Shadow::new(&ways, open, source.shared(half_spaces.sides(number))) };
         all_chosen += chosen.count_ones();
         shadow_rays += u64::from(open.count_ones());
         size = batch.put_if(size, shadow, open != 0);

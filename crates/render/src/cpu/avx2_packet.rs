@@ -10,8 +10,8 @@
 
 use super::avx2_bundle::Bundle;
 use super::avx2_trace::{Wide3, any_hit, cross_triangles, dot, lanes, load, splat_lane, splat3, sub};
+use super::half_spaces::FEW;
 use super::tracer::{RayLanes, Tracer};
-use super::walls::FEW;
 use bytemuck::cast_ref;
 use glam::Vec3;
 use lightcuts_kernel::Rules;

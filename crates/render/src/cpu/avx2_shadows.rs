@@ -1,7 +1,8 @@
 //! Shadow rays from the same places to many VPLs, with AVX2: packets of eight, some dozens of packets at once.
 //!
-//! What is hit cannot be guessed, and a wrong guess costs a processor more than testing a sphere does. So packets are collected
-//! first; a loop without a branch finds those that meet a sphere at all, and only they are computed to the end.
+//! What is hit cannot be guessed, and a wrong guess costs a processor more than testing a sphere does. So packets are
+//! collected first; a loop without a branch finds those that meet a sphere at all, and only they are computed to the
+//! end.
 
 #![allow(unsafe_code)]
 
@@ -9,9 +10,9 @@ use super::avx2_bundle::ALL;
 use super::avx2_fan::{PACKETS, miss_mesh};
 use super::avx2_packet::{Packet, height_of, sphere_from};
 use super::avx2_trace::{Wide3, dot, lanes, load3, splat3, store, sub};
+use super::half_spaces::{FEW, HalfSpaces, RayStart, Shared, Sides};
 use super::stack::Stack;
 use super::tracer::Tracer;
-use super::walls::{FEW, Shared, Sides, Stand, Walls};
 use crate::light_node::VplBlock;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
@@ -37,15 +38,16 @@ pub(super) struct Source {
     spheres: Stack<(Wide3, __m256), FEW>,
     /// Of each of a few squares how far its centre is along its normal.
     heights: Stack<__m256, FEW>,
-    stand: Stand,
-    /// Somewhere in the middle of the origins; with each of a few spheres the vector from there to its centre, and the square of the
-    /// distance that lines from there must keep from it if no ray from any of the origins is to hit it. Without spheres where the
-    /// origins are not in the room.
+    ray_start: RayStart,
+    /// Somewhere in the middle of the origins; with each of a few spheres the vector from there to its centre, and the
+    /// square of the distance that lines from there must keep from it if no ray from any of the origins is to hit it.
+    /// Without spheres where the origins are not in the room.
     middle: Wide3,
-    berths: Stack<(Wide3, __m256), FEW>,
+    clearances: Stack<(Wide3, __m256), FEW>,
 }
 
-/// Eight shadow rays, and how the VPLs that they end at light the points if nothing is hit; with that, twin of `VplIncidence`.
+/// Eight shadow rays, and how the VPLs that they end at light the points if nothing is hit; with that, twin of
+/// `VplIncidence`.
 #[derive(Clone, Copy)]
 pub(super) struct Shadow {
     /// To the VPLs, and its squared length.
@@ -72,14 +74,14 @@ impl Source {
             epsilon: ZERO,
             spheres: Stack::new(),
             heights: Stack::new(),
-            stand: Stand::NOWHERE,
+            ray_start: RayStart::NOWHERE,
             middle: [ZERO; 3],
-            berths: Stack::new(),
+            clearances: Stack::new(),
         }
     }
 
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    pub(super) fn set(&mut self, tracer: &Tracer<'_>, walls: &Walls, (origin, epsilon): (Wide3, __m256)) {
+    pub(super) fn set(&mut self, tracer: &Tracer<'_>, half_spaces: &HalfSpaces, (origin, epsilon): (Wide3, __m256)) {
         let Tracer { geometry, rules, .. } = tracer;
         (self.origin, self.epsilon) = (origin, epsilon);
         let zero = _mm256_setzero_ps();
@@ -87,17 +89,17 @@ impl Source {
         for sphere in geometry.spheres.iter().take(FEW) {
             self.spheres.push(sphere_from(sphere, origin));
         }
-        let mut stand = Stand::NOWHERE;
+        let mut ray_start = RayStart::NOWHERE;
         let epsilon = store(self.epsilon).into_iter().fold(f32::INFINITY, f32::min);
-        let verge = _mm256_set1_ps(walls.verge(*rules, epsilon));
+        let plane_tolerance = _mm256_set1_ps(half_spaces.plane_tolerance(*rules, epsilon));
         for (index, square) in geometry.squares.iter().take(FEW).enumerate() {
             let height = height_of(square, origin);
             self.heights.push(height);
             // The centre is behind points in front.
-            stand.sides.front |= u64::from(all(_mm256_cmp_ps::<_CMP_LE_OQ>(height, zero))) << index;
-            stand.sides.back |= u64::from(all(_mm256_cmp_ps::<_CMP_GE_OQ>(height, zero))) << index;
+            ray_start.sides.front |= u64::from(all(_mm256_cmp_ps::<_CMP_LE_OQ>(height, zero))) << index;
+            ray_start.sides.back |= u64::from(all(_mm256_cmp_ps::<_CMP_GE_OQ>(height, zero))) << index;
             let distance = _mm256_andnot_ps(_mm256_set1_ps(-0.0), height);
-            stand.on |= u64::from(all(_mm256_cmp_ps::<_CMP_LE_OQ>(distance, verge))) << index;
+            ray_start.on |= u64::from(all(_mm256_cmp_ps::<_CMP_LE_OQ>(distance, plane_tolerance))) << index;
         }
         // Of three planes across the axes those that all origins are above, and below.
         let above = |planes: Vec3| {
@@ -108,19 +110,19 @@ impl Source {
             let below = |axis: usize| all(_mm256_cmp_ps::<_CMP_LE_OQ>(origin[axis], _mm256_set1_ps(planes[axis])));
             below(0) | below(1) << 1 | below(2) << 2
         };
-        if above(walls.room.lower) & below(walls.room.upper) != 0b111 {
+        if above(half_spaces.enclosure.lower) & below(half_spaces.enclosure.upper) != 0b111 {
             return;
         }
-        for (number, &(lower, upper)) in walls.boxes.iter().enumerate() {
-            stand.sides.add_faces(number, below(lower) | above(upper) << 3);
+        for (number, &(lower, upper)) in half_spaces.boxes.iter().enumerate() {
+            ray_start.sides.add_faces(number, below(lower) | above(upper) << 3);
         }
-        self.stand = stand;
-        self.measure(geometry, walls);
+        self.ray_start = ray_start;
+        self.measure(geometry, half_spaces);
     }
 
     /// Finds how far from spheres ways that begin in the middle of the origins must keep.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    fn measure(&mut self, geometry: &Geometry<'_>, walls: &Walls) {
+    fn measure(&mut self, geometry: &Geometry<'_>, half_spaces: &HalfSpaces) {
         let [x, y, z] = [store(self.origin[0]), store(self.origin[1]), store(self.origin[2])];
         let origins: [Vec3; LANES] = std::array::from_fn(|lane| Vec3::new(x[lane], y[lane], z[lane]));
         let (lower, upper) = origins.iter().fold((origins[0], origins[0]), |(l, u), &p| (l.min(p), u.max(p)));
@@ -128,19 +130,19 @@ impl Source {
         let spread_sq = origins.iter().map(|&origin| (origin - middle).length_squared()).fold(0.0, f32::max);
         let spread = f64::from(spread_sq).sqrt() * (1.0 + 4.0 * f64::from(f32::EPSILON));
         self.middle = splat3(middle);
-        for (sphere, berth) in geometry.spheres.iter().zip(&walls.berths) {
-            let berth_sq = _mm256_set1_ps((berth + spread).powi(2) as f32);
-            self.berths.push((splat3(sphere.center - middle), berth_sq));
+        for (sphere, clearance) in geometry.spheres.iter().zip(&half_spaces.clearances) {
+            let clearance_sq = _mm256_set1_ps((clearance + spread).powi(2) as f32);
+            self.clearances.push((splat3(sphere.center - middle), clearance_sq));
         }
     }
 
     /// Of a block's VPLs those that nothing can hide from any of the origins, a bit each.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    pub(super) fn sees(&self, geometry: &Geometry<'_>, walls: &Walls, number: u32, block: &VplBlock) -> u32 {
-        let shared = self.shared(walls.sides(number));
-        let is_hidden = !walls.has_inside(number)
-            || self.berths.size < geometry.spheres.len()
+    pub(super) fn sees(&self, geometry: &Geometry<'_>, half_spaces: &HalfSpaces, number: u32, block: &VplBlock) -> u32 {
+        let shared = self.shared(half_spaces.sides(number));
+        let is_hidden = !half_spaces.has_inside(number)
+            || self.clearances.size < geometry.spheres.len()
             || geometry.squares.len() > FEW
             || shared.crossed(geometry.squares.len()) != 0
             || !geometry.triangles.is_empty() && shared.may_meet_mesh();
@@ -150,7 +152,7 @@ impl Source {
         let way = sub(load3(&block.position), self.middle);
         let length_sq = dot(way, way);
         let mut seen = ALL;
-        for (sphere, &(center, berth_sq)) in self.berths.as_slice().iter().enumerate() {
+        for (sphere, &(center, clearance_sq)) in self.clearances.as_slice().iter().enumerate() {
             if !shared.may_meet_sphere(sphere) {
                 continue;
             }
@@ -159,7 +161,7 @@ impl Source {
             let along = _mm256_max_ps(_mm256_min_ps(along, _mm256_set1_ps(1.0)), _mm256_setzero_ps());
             let offset_on = |axis: usize| _mm256_sub_ps(center[axis], _mm256_mul_ps(way[axis], along));
             let offset = [offset_on(0), offset_on(1), offset_on(2)];
-            seen &= _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(dot(offset, offset), berth_sq)) as u32;
+            seen &= _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(dot(offset, offset), clearance_sq)) as u32;
         }
         seen
     }
@@ -167,7 +169,7 @@ impl Source {
     /// Of shadow rays to places on some sides.
     #[inline]
     pub(super) fn shared(&self, ends: Sides) -> Shared {
-        self.stand.shared(ends)
+        self.ray_start.shared(ends)
     }
 
     /// A shadow ray as `kernel::ray::shadow_ray` makes it.

@@ -11,9 +11,9 @@ use super::avx2_packet::wide3;
 use super::avx2_shadows::{Shadow, Source, trace};
 use super::avx2_trace::{Wide3, lanes, load, splat_lane, spread, store, sub};
 use super::gather::{Blocks, Candidates, Gathered, Receiver};
+use super::half_spaces::{FacingId, HalfSpaces, Shared};
 use super::stack::Stack;
 use super::tracer::Tracer;
-use super::walls::{Outlook, Shared, Walls};
 use crate::light_node::{LANES, VplBlock};
 use glam::Vec3;
 use std::arch::x86_64::{
@@ -54,7 +54,7 @@ struct Points<'a> {
     point: Wide3,
     normal: Wide3,
     diffuse: Wide3,
-    outlook: Outlook,
+    facing: FacingId,
     askers: Stack<Askers<'a>, LANES>,
     /// Of the current block the points that have each VPL, and those whose VPLs are chosen without a test, a bit each.
     asked: [u32; LANES],
@@ -73,7 +73,7 @@ struct Points<'a> {
 
 impl<'a> Points<'a> {
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    fn new(at: &[Receiver], candidates: &[&'a [Candidates]], walls: &Walls) -> Self {
+    fn new(at: &[Receiver], candidates: &[&'a [Candidates]], half_spaces: &HalfSpaces) -> Self {
         let eight: [&Receiver; LANES] = std::array::from_fn(|lane| &at[lane.min(at.len() - 1)]);
         let normal = at[0].normal;
         let common = if at.iter().all(|at| at.normal == normal) { normal } else { Vec3::NAN };
@@ -81,7 +81,7 @@ impl<'a> Points<'a> {
             point: wide3(eight.map(|at| at.point)),
             normal: wide3(eight.map(|at| at.normal)),
             diffuse: wide3(eight.map(|at| at.diffuse)),
-            outlook: walls.outlook(common),
+            facing: half_spaces.facing(common),
             askers: Askers::among(candidates),
             asked: [0; LANES],
             certain: 0,
@@ -182,12 +182,12 @@ pub(super) fn evaluate_together(
     threshold: Option<f32>,
     at: &[Receiver],
 ) -> Vec<Gathered> {
-    let Blocks { vpls, walls } = blocks;
+    let Blocks { vpls, half_spaces } = blocks;
     let (mut points, mut sources) = (Vec::with_capacity(PACKETS), [const { Source::new() }; PACKETS]);
     for (at, candidates) in at.chunks(LANES).zip(candidates.chunks(LANES)) {
-        let eight = Points::new(at, candidates, walls);
+        let eight = Points::new(at, candidates, half_spaces);
         let epsilon = std::array::from_fn(|lane| at[lane.min(at.len() - 1)].epsilon);
-        sources[points.len()].set(tracer, walls, (eight.point, load(&epsilon)));
+        sources[points.len()].set(tracer, half_spaces, (eight.point, load(&epsilon)));
         points.push(eight);
     }
     let mut batch = Batch::new();
@@ -196,9 +196,9 @@ pub(super) fn evaluate_together(
         let light = |lane: usize| (splat_lane(&block.diffuse, lane), _mm256_set1_ps(block.attenuation[lane % LANES]));
         for (points, source) in points.iter_mut().zip(&sources) {
             points.ask(number, threshold.is_some());
-            points.is_turned_away = walls.is_turned_away(number, points.outlook);
-            points.shared = source.shared(walls.sides(number));
-            points.seen = source.sees(&tracer.geometry, walls, number, block);
+            points.is_turned_away = half_spaces.is_turned_away(number, points.facing);
+            points.shared = source.shared(half_spaces.sides(number));
+            points.seen = source.sees(&tracer.geometry, half_spaces, number, block);
             for lane in lanes(points.seen) {
                 let Some((ways, open)) = points.ways(block, lane, threshold) else { continue };
                 add(&mut points.sums[lane], (ways.cosines, ways.dist_sq, open), light(lane), points.diffuse);

@@ -1,6 +1,6 @@
 //! The CPU as a device: it never faults, so that it can take over from any other.
 
-use super::{Simd, Tracer, Walls};
+use super::{HalfSpaces, Simd, Tracer};
 use crate::device::{Device, DeviceFault, DeviceInfo, DeviceKind, Lighting, Pass, TileResult, View};
 use crate::film::Tile;
 use crate::light_tree::{LightTree, TreeLayout};
@@ -23,30 +23,30 @@ pub struct CpuDevice<'a> {
     world: &'a World,
     simd: Simd,
     /// Those of the last light tree, by its number.
-    walls: Mutex<Option<(u64, Arc<Walls>)>>,
+    half_spaces: Mutex<Option<(u64, Arc<HalfSpaces>)>>,
 }
 
 impl<'a> CpuDevice<'a> {
     /// The processor, made ready for passes over a world.
     pub fn new(world: &'a World, simd: Simd) -> Self {
-        Self { world, simd, walls: Mutex::new(None) }
+        Self { world, simd, half_spaces: Mutex::new(None) }
     }
 
     fn tracer(&self, view: &View<'_>) -> Tracer<'a> {
         Tracer::new(self.world.shapes.geometry(), view.rules, self.simd)
     }
 
-    fn walls(&self, tracer: &Tracer<'_>, tree: &LightTree) -> Arc<Walls> {
-        let known = || self.walls.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((id, walls)) = &*known()
+    fn half_spaces(&self, tracer: &Tracer<'_>, tree: &LightTree) -> Arc<HalfSpaces> {
+        let known = || self.half_spaces.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((id, half_spaces)) = &*known()
             && *id == tree.id()
         {
-            return Arc::clone(walls);
+            return Arc::clone(half_spaces);
         }
         // Not while others wait: what is made in parallel may turn to another picture meanwhile.
-        let walls = Arc::new(Walls::new(tracer, tree));
-        *known() = Some((tree.id(), Arc::clone(&walls)));
-        walls
+        let half_spaces = Arc::new(HalfSpaces::new(tracer, tree));
+        *known() = Some((tree.id(), Arc::clone(&half_spaces)));
+        half_spaces
     }
 }
 
@@ -66,13 +66,13 @@ impl Device for CpuDevice<'_> {
         monitor: &dyn Monitor,
     ) -> Result<Vec<Option<TileResult>>, DeviceFault> {
         let tracer = self.tracer(&pass.view);
-        let walls = match pass.lighting {
-            Lighting::Vpls(vpls) => self.walls(&tracer, vpls.tree),
+        let half_spaces = match pass.lighting {
+            Lighting::Vpls(vpls) => self.half_spaces(&tracer, vpls.tree),
             Lighting::Scene { .. } => Arc::default(),
         };
         let results = tiles
             .par_iter()
-            .map(|tile| (!monitor.cancelled()).then(|| pass.render_tile(tracer, &walls, tile)))
+            .map(|tile| (!monitor.cancelled()).then(|| pass.render_tile(tracer, &half_spaces, tile)))
             .inspect(|_| monitor.advance())
             .collect();
         Ok(results)

@@ -1,6 +1,6 @@
 //! Which VPLs light a point, and what they add: the plain versions and the choice between them and SIMD.
 
-use super::{Tracer, Walls};
+use super::{HalfSpaces, Tracer};
 use crate::light_node::{LANES, LightNode, VplBlock};
 use crate::light_tree::{LightTree, Nodes, PackedTree};
 use crate::stats::TreeVisits;
@@ -33,7 +33,7 @@ pub(crate) struct Gathered {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Blocks<'a> {
     pub(crate) vpls: &'a [VplBlock],
-    pub(crate) walls: &'a Walls,
+    pub(crate) half_spaces: &'a HalfSpaces,
 }
 
 /// A point that gathers light.

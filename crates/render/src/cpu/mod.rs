@@ -18,13 +18,13 @@ mod avx2_together;
 #[cfg(target_arch = "x86_64")]
 mod avx2_trace;
 mod device;
+mod enclosure;
 mod gather;
+mod half_spaces;
 mod lanes;
-mod room;
 #[cfg(target_arch = "x86_64")]
 mod stack;
 mod tracer;
-mod walls;
 
 pub use device::{CpuDevice, processor_name};
 #[cfg(test)]
@@ -32,12 +32,12 @@ pub(crate) use gather::tests::chosen;
 pub(crate) use gather::{
     Blocks, Candidates, Gathered, Receiver, evaluate, evaluate_together, select, select_exhaustively,
 };
+pub(crate) use half_spaces::HalfSpaces;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::Wide;
 pub(crate) use lanes::{Lanes, Plain};
 pub(crate) use tracer::RayLanes;
 pub use tracer::Tracer;
-pub(crate) use walls::Walls;
 
 /// Whether SIMD instructions are used. Never changes the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

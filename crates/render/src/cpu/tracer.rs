@@ -111,7 +111,7 @@ pub(crate) fn root_box(geometry: &Geometry<'_>, left_out: impl Fn(&BvhNode) -> u
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cpu::{Blocks, Candidates, Receiver, Walls, evaluate, evaluate_together, select};
+    use crate::cpu::{Blocks, Candidates, HalfSpaces, Receiver, evaluate, evaluate_together, select};
     use crate::light_tree::tests::scattered;
     use crate::light_tree::{LightTree, TreeLayout};
     use lightcuts_import::{ImportOptions, load};
@@ -236,8 +236,8 @@ mod tests {
                 };
                 let gather = |simd| {
                     let tracer = Tracer::new(world.shapes.geometry(), rules, simd);
-                    let walls = Walls::new(&tracer, &tree);
-                    evaluate(&tracer, &Blocks { vpls: &tree.blocks, walls: &walls }, &all, Some(1e-5), &at)
+                    let half_spaces = HalfSpaces::new(&tracer, &tree);
+                    evaluate(&tracer, &Blocks { vpls: &tree.blocks, half_spaces: &half_spaces }, &all, Some(1e-5), &at)
                 };
                 let (plain, wide) = (gather(Simd::Off), gather(Simd::Auto));
                 assert_eq!(plain, wide, "{scene} at {}", at.point);
@@ -282,8 +282,8 @@ mod tests {
                     let is_shared = threshold.is_none() && k % 2 == 0;
                     let lists: [&[Candidates]; 4 * LANES] =
                         std::array::from_fn(|lane| &lists[if is_shared { 0 } else { lane }][..]);
-                    let walls = Walls::new(&tracer, &tree);
-                    let blocks = &Blocks { vpls: &tree.blocks, walls: &walls };
+                    let half_spaces = HalfSpaces::new(&tracer, &tree);
+                    let blocks = &Blocks { vpls: &tree.blocks, half_spaces: &half_spaces };
                     let together = evaluate_together(&tracer, blocks, &lists[..count], threshold, &receivers[..count]);
                     for lane in 0..count {
                         let alone = evaluate(&tracer, blocks, lists[lane], threshold, &receivers[lane]);

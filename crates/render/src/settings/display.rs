@@ -1,4 +1,4 @@
-//! How a picture is shown.
+//! How a picture is displayed.
 
 use lightcuts_image::{Exposure, GlobalToneMapping, Image, LocalToneMapping, ToneMapping, Transfer};
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ pub struct Display {
     pub global: GlobalToneMapping,
     /// Parameters of the local operator.
     pub local: LocalToneMapping,
-    /// Transfer curve; the thesis shows values as they are.
+    /// Transfer function; the thesis shows values as they are.
     pub transfer: Transfer,
 }
 

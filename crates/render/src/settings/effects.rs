@@ -13,7 +13,7 @@ pub struct AmbientOcclusion {
     pub angle: f32,
     /// Step of the grid in degrees: (2 angle / step + 1)^2 rays per hit.
     pub step: f32,
-    /// Distance from which on a surface no longer occludes, in scene units.
+    /// Distance beyond which surfaces do not occlude, in scene units.
     pub range: f32,
     /// Factor on the result.
     pub factor: f32,
@@ -39,18 +39,18 @@ impl AmbientOcclusion {
 pub struct Caustics {
     /// Whether photons are shot.
     pub enabled: bool,
-    /// Spacing of the photons on the disk through a target's bounding sphere, in scene units; wider where all lights and
-    /// targets together would take more than 2^26 photons.
+    /// Spacing of the photons on the disk through a target's bounding sphere, in scene units; wider where all lights
+    /// and targets together would take more than 2^26 photons.
     pub step: f32,
     /// Radius of the gathered disk, in scene units.
     pub radius: f32,
-    /// Fewest photons in the disk that count.
+    /// Minimum number of photons in the disk; fewer are ignored.
     pub min_photons: u32,
-    /// Least F of a target.
+    /// Minimum F of a target.
     pub min_reflection: f32,
-    /// Least R of a target.
+    /// Minimum R of a target.
     pub min_refraction: f32,
-    /// Least r + g + b of a diffuse colour that catches photons.
+    /// Minimum r + g + b of a diffuse colour on which photons are stored.
     pub min_diffuse: f32,
 }
 
@@ -68,7 +68,7 @@ impl Default for Caustics {
     }
 }
 
-/// Glow around bright places of the finished picture.
+/// Glow around bright areas of the finished picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Bloom {
@@ -76,7 +76,7 @@ pub struct Bloom {
     pub enabled: bool,
     /// Radius in pixels.
     pub radius: f32,
-    /// Share of the blurred picture, 0..1.
+    /// Weight of the blurred picture, 0..1.
     pub weight: f32,
 }
 

@@ -1,4 +1,4 @@
-//! Everything that says how a scene is to be rendered: plain parameter structs with the original program's defaults.
+//! How a scene is rendered: plain parameter structs with the original program's defaults.
 //!
 //! The same structs are the TOML job file's tables; unknown keys are errors.
 
@@ -6,6 +6,7 @@ mod display;
 mod effects;
 mod physical;
 mod picture;
+mod scope;
 mod tables;
 mod validate;
 
@@ -13,6 +14,7 @@ pub use display::{Display, ToneMappingKind};
 pub use effects::{AmbientOcclusion, Bloom, Caustics};
 pub use physical::{Integrator, Physical};
 pub use picture::{Filter, FilterKind, ImageSize, Sampling};
+pub use scope::{Scope, keys_of, value_in};
 pub use tables::{TomlFault, overlay, value_at};
 pub use validate::SettingsError;
 
@@ -30,7 +32,7 @@ pub struct Settings {
     pub image: ImageSize,
     /// Samples per pixel and where they lie.
     pub sampling: Sampling,
-    /// How samples become pixels.
+    /// Reconstruction filter.
     pub filter: Filter,
     /// How VPLs are placed.
     pub vpl: VplPlacement,
@@ -44,8 +46,7 @@ pub struct Settings {
     pub bloom: Bloom,
     /// From linear light to displayed values.
     pub display: Display,
-    /// The physical model; of the thesis' model nothing here matters, and of the physical one neither VPL placement nor
-    /// effects.
+    /// Used only with `run.model = "physical"`, which ignores VPL placement and most effects ([`Scope`] has the list).
     pub physical: Physical,
 }
 
@@ -59,7 +60,7 @@ pub struct Run {
     pub reproduce: bool,
     /// Seed of the random numbers.
     pub seed: u32,
-    /// Longest chain of mirrored and refracted rays, camera ray included (thesis: 4).
+    /// Maximum ray depth: mirrored and refracted rays, the camera ray included (thesis: 4).
     pub max_depth: u32,
 }
 
@@ -84,11 +85,11 @@ pub enum Model {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct VplPlacement {
-    /// Nominal probability p that a hit becomes a VPL, for a picture of 512 x 512 pixels of one sample. The effective one
-    /// is (floor(p 10^6) + 1) / 32768, about 30.5 times as much, as in the original; shared out over the camera rays and
-    /// at most 1, so that pictures of one shape place as many VPLs at any size and number of samples.
+    /// Nominal probability p that a hit becomes a VPL, for a picture of 512 x 512 pixels of one sample. The effective
+    /// one is (floor(p 10^6) + 1) / 32768, about 30.5 times as much, as in the original; shared out over the camera
+    /// rays and at most 1, so that pictures of one shape place as many VPLs at any size and number of samples.
     pub probability: f32,
-    /// Least r + g + b of a hit's colour for it to become a VPL.
+    /// Minimum r + g + b of a hit's colour for it to become a VPL.
     pub min_illumination: f32,
     /// Factor on every VPL's light.
     pub attenuation: f32,
@@ -109,7 +110,7 @@ impl Default for VplPlacement {
 pub struct Gather {
     /// How they are chosen.
     pub strategy: Strategy,
-    /// Least relevance (intensity x cosine / squared distance) of a chosen VPL; not for `all`.
+    /// Minimum relevance (intensity x cosine / squared distance) of a chosen VPL; not for `all`.
     pub threshold: f32,
 }
 
@@ -125,14 +126,14 @@ impl Default for Gather {
 pub enum Strategy {
     /// Every VPL.
     All,
-    /// The thesis' lightcuts: every VPL whose relevance reaches the threshold, found through a bounded tree. In the physical
-    /// model those of 2005: clusters by error bound.
+    /// The thesis' lightcuts: every VPL whose relevance reaches the threshold, found through a bounded tree. In the
+    /// physical model those of 2005: clusters by error bound.
     Lightcuts,
     /// The same VPLs as `lightcuts`, found by testing every one: the plain version, for comparison. Thesis' model only.
     LightcutsExhaustive,
-    /// A few, drawn down the tree by what they may send (after Yuksel 2019). Physical model only.
+    /// A few, sampled down the tree by importance (after Yuksel 2019). Physical model only.
     Stochastic,
-    /// Each tile those of the other strategies that measurement favours there. Physical model only.
+    /// In each tile, the one of the other strategies that measurements favour. Physical model only.
     Auto,
 }
 

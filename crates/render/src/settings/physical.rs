@@ -6,23 +6,24 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Physical {
-    /// How light is found.
+    /// Light transport algorithm.
     pub integrator: Integrator,
     /// Seconds after which no more samples are taken; 0 for no limit.
     pub time_limit: f32,
-    /// Relative error of the pixels, as a root mean square, at which no more samples are taken; 0 for none.
+    /// Estimated relative RMS error of the pixels below which no more samples are taken; 0 for none.
     pub noise: f32,
-    /// VPLs of each pass, about.
+    /// Approximate number of VPLs per pass.
     pub vpls: u32,
-    /// Error of a cluster, relative to the light of all, up to which its representative stands for it.
+    /// Error bound of a cluster, relative to the pixel's light, up to which its representative stands for it.
     pub cut_error: f32,
-    /// Clusters of a cut, at most.
+    /// Maximum number of clusters in a cut.
     pub max_cut: u32,
-    /// Distance below which a VPL's light no longer grows, relative to the scene's diagonal.
+    /// Distance below which the light of a VPL is clamped, relative to the scene's diagonal.
     pub clamp: f32,
-    /// Whether what the clamp takes is given back by short rays; without it corners stay too dark for ever.
+    /// Whether short paths compensate for the energy that the clamp removes; without it the picture is biased: dark
+    /// corners.
     pub compensation: bool,
-    /// Whether VPLs are kept by how much they bring to what the camera sees.
+    /// Whether VPLs are kept in proportion to what they contribute to the picture.
     pub rejection: bool,
     /// Factor on the lights of a thesis scene, which have no falloff and get intensities from the scene's size.
     pub light_scale: f32,
@@ -45,14 +46,14 @@ impl Default for Physical {
     }
 }
 
-/// Ways to find light.
+/// Light transport algorithms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Integrator {
-    /// Indirect light from VPLs, fresh ones in each pass.
+    /// Indirect light from VPLs, new ones in each pass.
     Lightcuts,
     /// Path tracing: the reference.
     Path,
-    /// Each tile the one of both that measurement favours there.
+    /// In each tile, the one of both that measurements favour.
     Auto,
 }

@@ -29,7 +29,7 @@ pub struct Sampling {
     pub samples: u32,
     /// Samples of pixels that differ from a neighbour; no adaptive anti-aliasing unless above `samples`.
     pub adaptive_samples: u32,
-    /// Difference between neighbouring pixels, in any channel, from which on they get `adaptive_samples`.
+    /// Difference between neighbouring pixels, in any channel, at which they get `adaptive_samples`.
     pub adaptive_threshold: f32,
 }
 
@@ -39,7 +39,7 @@ impl Default for Sampling {
     }
 }
 
-/// How samples become pixels.
+/// Reconstruction filter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Filter {

@@ -27,8 +27,7 @@ impl Settings {
         ensure("image.height", self.image.height, (1..=65_536).contains(&self.image.height), "1 to 65536")?;
         ensure("image.width", self.image.width, pixels <= MAX_PIXELS as u64, "fewer than 2^28 pixels in all")?;
         ensure("run.max-depth", self.run.max_depth, (1..=12).contains(&self.run.max_depth), "1 to 12")?;
-        let plain = self.image == ImageSize::default() && self.sampling.samples == 1 && self.adaptive_extra() == 0;
-        ensure("run.reproduce", true, !self.run.reproduce || plain, "512 x 512 pixels of one sample with it")?;
+        self.validate_reproduction()?;
         self.validate_sampling()?;
         number("vpl.probability", self.vpl.probability, 0.0, 1.0)?;
         number("vpl.min-illumination", self.vpl.min_illumination, 0.0, 3.0)?;
@@ -40,8 +39,16 @@ impl Settings {
 
     /// Fails unless this is the model of light.
     pub fn require_model(&self, model: Model) -> Result<(), SettingsError> {
-        let name = |model| if model == Model::Thesis { "thesis" } else { "physical" };
-        ensure("run.model", name(self.run.model), self.run.model == model, name(model))
+        ensure("run.model", self.run.model.name(), self.run.model == model, model.name())
+    }
+
+    fn validate_reproduction(&self) -> Result<(), SettingsError> {
+        if !self.run.reproduce {
+            return Ok(());
+        }
+        ensure("run.reproduce", true, self.run.model == Model::Thesis, "the thesis' model with it")?;
+        let plain = self.image == ImageSize::default() && self.sampling.samples == 1 && self.adaptive_extra() == 0;
+        ensure("run.reproduce", true, plain, "512 x 512 pixels of one sample with it")
     }
 
     fn validate_sampling(&self) -> Result<(), SettingsError> {
@@ -60,15 +67,17 @@ impl Settings {
 
     fn validate_physical(&self) -> Result<(), SettingsError> {
         let physical = &self.physical;
-        let reproduces = self.run.reproduce && self.run.model == Model::Physical;
-        ensure("run.reproduce", true, !reproduces, "the thesis' model with it")?;
         let (strategy, fits) = match self.gather.strategy {
             Strategy::LightcutsExhaustive => ("lightcuts-exhaustive", self.run.model == Model::Thesis),
             Strategy::Stochastic => ("stochastic", self.run.model == Model::Physical),
             Strategy::Auto => ("auto", self.run.model == Model::Physical),
             Strategy::All | Strategy::Lightcuts => ("", true),
         };
-        ensure("gather.strategy", strategy, fits, "one that this model of light has")?;
+        let expected = match self.run.model {
+            Model::Thesis => "`all`, `lightcuts` or `lightcuts-exhaustive` in the thesis' model",
+            Model::Physical => "`all`, `lightcuts`, `stochastic` or `auto` in the physical model",
+        };
+        ensure("gather.strategy", strategy, fits, expected)?;
         number("physical.time-limit", physical.time_limit, 0.0, 1e9)?;
         number("physical.noise", physical.noise, 0.0, 1e3)?;
         ensure("physical.vpls", physical.vpls, (1..=1 << 24).contains(&physical.vpls), "1 to 16777216")?;

@@ -178,7 +178,7 @@ fn after_a_fault_at_any_moment_the_revived_device_makes_the_same_picture() {
         let (rendering, notes) = render_noting(&world, &settings, &Stations::all(&fake));
         assert_same_picture(&expected, &rendering, &format!("fault at {moment}, {what}"));
         assert_eq!((notes.len(), rendering.stats.device_faults), (1, 1), "{notes:?}");
-        assert!(notes[0].contains(what) && notes[0].contains("fake") && notes[0].contains("anew"), "{notes:?}");
+        assert!(notes[0].contains(what) && notes[0].contains("fake") && notes[0].contains("reopened"), "{notes:?}");
         assert!(kinds(&rendering).iter().all(|(_, kind)| *kind == FAKE));
         assert_eq!((fake.calls().len(), fake.revivals.into_inner()), (calls.len() + 1, 1));
     }

@@ -10,7 +10,7 @@ pub struct LogChart {
     pub x_title: String,
     /// What y is, with its unit.
     pub y_title: String,
-    /// The curves, told apart by colours and signs in their order.
+    /// The curves, distinguished by colours and markers in their order.
     pub lines: Vec<Line>,
     /// A place that is pointed out.
     pub mark: Option<Mark>,

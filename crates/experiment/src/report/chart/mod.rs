@@ -28,7 +28,7 @@ const INK: RGBColor = RGBColor(0x26, 0x2b, 0x33);
 const SOFT_INK: RGBColor = RGBColor(0x5b, 0x63, 0x70);
 const GRID: RGBColor = RGBColor(0xe2, 0xe5, 0xea);
 const PAPER: RGBColor = RGBColor(0xff, 0xff, 0xff);
-/// Colours that people with any colour vision tell apart (Okabe & Ito 2008), the darker ones first.
+/// Colours that people with any colour vision can distinguish (Okabe & Ito 2008), the darker ones first.
 const PALETTE: [RGBColor; 6] = [
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0xd5, 0x5e, 0x00),
@@ -91,7 +91,7 @@ impl Canvas<'_> {
         self.0.draw(&Text::new(printable(text), place, style))
     }
 
-    /// A sign of the series at a place of a curve: shapes tell curves apart where colours do not.
+    /// A marker of the series at a point of a curve: shapes distinguish curves where colours do not.
     fn sign(&self, series: usize, (x, y): (i32, i32)) -> Drawn {
         let style = filled(color(series));
         match series % 4 {

@@ -1,7 +1,7 @@
 //! The report as one page that loads nothing.
 //!
-//! Every text goes through the template's escaping or through [`prose`](super::prose); charts are escaped by their backend.
-//! The page's policy forbids every request and every script but its own, should anything get through.
+//! Every text goes through the template's escaping or through [`prose`](super::prose); charts are escaped by their
+//! backend. The page's policy forbids every request and every script but its own, should anything get through.
 
 mod pictures;
 mod table;

@@ -22,7 +22,7 @@ pub(super) struct Request<'a> {
 /// An acceleration in one scene.
 #[derive(Default)]
 struct Figure {
-    /// Of the seconds that are told of each, in percent.
+    /// Of the seconds that are shown for each, in percent.
     ours: Option<f64>,
     /// Of elapsed seconds, in percent.
     elapsed: Option<f64>,

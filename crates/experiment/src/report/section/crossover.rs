@@ -40,8 +40,8 @@ pub(super) fn crossover(first: &Curve, second: &Curve) -> Crossover {
     Crossover::At { x, y: at(second, x.ln()).map_or(f64::NAN, f64::exp) }
 }
 
-/// ln second - ln first over ln x, at every place of either curve in the range that both cover. The difference is linear
-/// between them.
+/// ln second - ln first over ln x, at every place of either curve in the range that both cover. The difference is
+/// linear between them.
 fn differences(first: &Curve, second: &Curve) -> Vec<(f64, f64)> {
     let mut places: Vec<f64> = first.iter().chain(second).map(|&(x, _)| x.ln()).collect();
     places.sort_by(f64::total_cmp);

@@ -68,7 +68,7 @@ pub(super) fn blocks(measured: &Measured<'_>, id: &str) -> Vec<Block> {
     vec![Block::Notice(Notice::finding(text)), Block::Table(table(measured, id, &slips))]
 }
 
-/// Every published acceleration that a section has a row for: that row tells what it is computed from.
+/// Every published acceleration that a section has a row for: that row says what it is computed from.
 fn cases<'a>(measured: &Measured<'a>) -> Vec<Case<'a>> {
     let header = measured.header;
     let mut cases = Vec::new();

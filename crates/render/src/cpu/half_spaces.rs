@@ -1,10 +1,10 @@
-//! What a shadow ray need not be tested against: squares that have both of its ends on one side, the mesh and spheres where both
-//! lie beyond one face of their boxes, and VPLs that look the same way as the surface does.
+//! What a shadow ray need not be tested against: squares that have both of its ends on one side, the mesh and spheres
+//! where both lie beyond one face of their boxes, and VPLs that look the same way as the surface does.
 //!
-//! The thesis' scenes are rooms of squares around a mesh or spheres: nothing in a room is behind its walls, and a test per ray and
-//! wall would find that out again and again.
+//! The thesis' scenes are rooms of squares around a mesh or spheres: nothing in a room is behind its walls, and a
+//! test per ray and wall would find that out again and again.
 
-use super::room::Room;
+use super::enclosure::Enclosure;
 use super::tracer::Tracer;
 use crate::light_node::{LANES, VplBlock};
 use crate::light_tree::LightTree;
@@ -14,10 +14,10 @@ use lightcuts_kernel::ray::{NONE, ORIGINAL_EPSILON};
 use lightcuts_world::bvh::Geometry;
 use rayon::prelude::*;
 
-/// Most squares that are looked at.
+/// Maximum number of squares that are considered.
 pub(crate) const FEW: usize = 16;
 
-/// A VPL is far from a plane that is this part of the room's diagonal away.
+/// A VPL is far from a plane that is this part of the enclosure's diagonal away.
 const FAR: f32 = 64.0;
 
 /// Faces of a box: the lower one of each axis, then the upper ones; normals outwards.
@@ -31,13 +31,14 @@ const ROUNDING: f64 = 5.0 * (f32::EPSILON / 2.0) as f64;
 
 /// On which side of some planes something lies, a bit each; in neither mask where that is not sure.
 ///
-/// The planes are those of the first squares and, from [`FEW`] on, the faces of boxes: the mesh's, then those of the first spheres.
+/// The planes are those of the first squares and, from [`FEW`] on, the faces of boxes: the mesh's, then those of the
+/// first spheres.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Sides {
     /// Where the normal points to.
     pub(crate) front: u64,
     pub(crate) back: u64,
-    /// As far from the plane as [`Walls::verge`] asks for.
+    /// Far enough from the plane for [`HalfSpaces::plane_tolerance`].
     far: u64,
 }
 
@@ -47,13 +48,13 @@ pub(crate) struct Shared(u64);
 
 /// Where shadow rays begin.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stand {
+pub(crate) struct RayStart {
     pub(crate) sides: Sides,
-    /// Planes that all origins are within the [verge](Walls::verge) of, a bit each.
+    /// Planes that all origins are within the [plane tolerance](HalfSpaces::plane_tolerance) of, a bit each.
     pub(crate) on: u64,
 }
 
-impl Stand {
+impl RayStart {
     /// On no side for certain.
     pub(crate) const NOWHERE: Self = Self { sides: Sides { front: 0, back: 0, far: 0 }, on: 0 };
 
@@ -108,43 +109,43 @@ struct Placing {
     sides: Sides,
     /// The number of their direction, if it is the same for all, else [`NONE`].
     direction: u32,
-    /// Whether all are in the room.
+    /// Whether all are in the enclosure.
     is_inside: bool,
 }
 
-/// The way that surfaces with one normal look.
+/// The number of a normal among the directions of blocks.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Outlook(u32);
+pub(crate) struct FacingId(u32);
 
-/// How the VPLs of every block lie.
+/// On which sides of planes the VPLs of every block lie.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Walls {
+pub(crate) struct HalfSpaces {
     blocks: Vec<Placing>,
-    /// What points lie in for which that holds.
-    pub(crate) room: Room,
+    /// The box of the points for which that holds.
+    pub(crate) enclosure: Enclosure,
     /// The boxes whose faces have bits.
     pub(crate) boxes: Vec<(Vec3, Vec3)>,
-    /// The [berth](Room::berth) of each of the first spheres.
-    pub(crate) berths: Vec<f64>,
+    /// The [clearance](Enclosure::clearance) of each of the first spheres.
+    pub(crate) clearances: Vec<f64>,
     /// Directions of whole blocks: those that are met first.
     directions: Vec<Vec3>,
 }
 
-impl Walls {
+impl HalfSpaces {
     /// For points on the surfaces of a tracer's geometry.
     pub(crate) fn new(tracer: &Tracer<'_>, tree: &LightTree) -> Self {
         let Tracer { geometry, mesh, .. } = tracer;
-        let room = Room::around(geometry);
-        let spheres = geometry.spheres.iter().take(BOXED).map(|sphere| room.sphere_box(sphere));
+        let enclosure = Enclosure::around(geometry);
+        let spheres = geometry.spheres.iter().take(BOXED).map(|sphere| enclosure.sphere_box(sphere));
         let boxes: Vec<_> = std::iter::once(*mesh).chain(spheres).collect();
         let planes = planes(geometry, &boxes);
         let common = |(number, block): (usize, &VplBlock)| {
             let lanes = tree.lanes(number as u32);
             let vpls = || (0..LANES).filter(move |lane| lanes >> lane & 1 == 1).map(|lane| block.vpl(lane));
             let all = Sides { front: u64::MAX, back: u64::MAX, far: u64::MAX };
-            let sides = vpls().map(|vpl| sides_of(&planes, vpl.position, &room)).fold(all, Sides::both);
+            let sides = vpls().map(|vpl| sides_of(&planes, vpl.position, &enclosure)).fold(all, Sides::both);
             let direction = block.vpl(0).direction;
-            let is_inside = vpls().all(|vpl| room.contains(vpl.position));
+            let is_inside = vpls().all(|vpl| enclosure.contains(vpl.position));
             (sides, vpls().all(|vpl| vpl.direction == direction).then_some(direction), is_inside)
         };
         let common: Vec<_> = tree.blocks.par_iter().enumerate().map(common).collect();
@@ -154,8 +155,8 @@ impl Walls {
             Placing { sides, direction: number.unwrap_or(NONE), is_inside }
         };
         let blocks = common.into_iter().map(&mut placing).collect();
-        let berths = geometry.spheres.iter().take(FEW).map(|sphere| room.berth(sphere)).collect();
-        Self { blocks, room, boxes, berths, directions }
+        let clearances = geometry.spheres.iter().take(FEW).map(|sphere| enclosure.clearance(sphere)).collect();
+        Self { blocks, enclosure, boxes, clearances, directions }
     }
 
     /// The sides that all VPLs of a block are on.
@@ -163,34 +164,35 @@ impl Walls {
         self.blocks[block as usize].sides
     }
 
-    /// How near to a square's plane a shadow ray may begin, on either side, to cross it before hits count, if it ends in the room far
-    /// from the plane. `epsilon` is `spawn_epsilon` at its origin.
+    /// How near to a square's plane a shadow ray may begin, on either side, to cross it before hits count, if it ends
+    /// in the enclosure far from the plane. `epsilon` is `spawn_epsilon` at its origin.
     ///
-    /// A surface is rarely in its own plane to the last bit, and no light would be on its side for certain. With the height p where the
-    /// ray begins, the plane is crossed at |t| < |p| / (v - |p|), v being a [`FAR`]th of the diagonal or more; with all errors, less
-    /// than 2 % above |p| / v. Hits count from 0.001 or from epsilon by the ray's length, which is no more than the diagonal.
-    pub(crate) fn verge(&self, rules: Rules, epsilon: f32) -> f32 {
+    /// A surface is rarely in its own plane to the last bit, and no light would be on its side for certain. With the
+    /// height p where the ray begins, the plane is crossed at |t| < |p| / (v - |p|), v being a [`FAR`]th of the
+    /// diagonal or more; with all errors, less than 2 % above |p| / v. Hits count from 0.001 or from epsilon by the
+    /// ray's length, which is no more than the diagonal.
+    pub(crate) fn plane_tolerance(&self, rules: Rules, epsilon: f32) -> f32 {
         let t_min = match rules {
             Rules::Original => ORIGINAL_EPSILON,
-            Rules::Repaired => (epsilon / self.room.diagonal()).min(0.01),
+            Rules::Repaired => (epsilon / self.enclosure.diagonal()).min(0.01),
         };
-        0.9 * t_min * self.room.diagonal() / FAR
+        0.9 * t_min * self.enclosure.diagonal() / FAR
     }
 
-    /// Whether all VPLs of a block are in the room.
+    /// Whether all VPLs of a block are in the enclosure.
     pub(crate) fn has_inside(&self, block: u32) -> bool {
         self.blocks[block as usize].is_inside
     }
 
-    /// The outlook of a surface.
-    pub(crate) fn outlook(&self, normal: Vec3) -> Outlook {
+    /// The number of a surface's normal.
+    pub(crate) fn facing(&self, normal: Vec3) -> FacingId {
         // One past those of blocks where there is none.
-        Outlook(self.directions.iter().take_while(|&&direction| direction != normal).count() as u32)
+        FacingId(self.directions.iter().take_while(|&&direction| direction != normal).count() as u32)
     }
 
-    /// Whether the VPLs of a block look the way that a surface does, and so neither lights the other: where normal and direction
-    /// are equal, the cosine at one is that at the other with the other sign, to the last bit.
-    pub(crate) fn is_turned_away(&self, block: u32, Outlook(number): Outlook) -> bool {
+    /// Whether the VPLs of a block look the way that a surface does, and so neither lights the other: where normal and
+    /// direction are equal, the cosine at one is that at the other with the other sign, to the last bit.
+    pub(crate) fn is_turned_away(&self, block: u32, FacingId(number): FacingId) -> bool {
         self.blocks[block as usize].direction == number
     }
 }
@@ -220,23 +222,25 @@ fn planes(geometry: &Geometry<'_>, boxes: &[(Vec3, Vec3)]) -> Vec<Plane> {
     squares.chain(faces).collect()
 }
 
-/// On which sides of planes a VPL lies so far that no rounding lets a ray from a point in a room towards it cross them, provided
-/// that the point's height above the plane is not of the other sign. None, for a VPL outside of the room.
+/// On which sides of planes a VPL lies so far that no rounding lets a ray from a point in an enclosure towards it cross
+/// them, provided that the point's height above the plane is not of the other sign. None, for a VPL outside of the
+/// enclosure.
 ///
-/// With the heights p and v of point and VPL along the normal, seen from the plane, it is crossed at t = p / (p - v): at 1 or
-/// beyond, or before 0, where v has the sign of p. `intersect_square` computes that from p and from the slope p - v; if |v| is
-/// more than their errors together, what is rounded keeps that order. A box's face is met at a t that is rounded no worse.
-fn sides_of(planes: &[Plane], position: Vec3, room: &Room) -> Sides {
+/// With the heights p and v of point and VPL along the normal, seen from the plane, it is crossed at t = p / (p - v): at 1
+/// or beyond, or before 0, where v has the sign of p. `intersect_square` computes that from p and from the slope
+/// (p - v); if |v| is more than their errors together, what is rounded keeps that order. A box's face is met at a t that
+/// is rounded no worse.
+fn sides_of(planes: &[Plane], position: Vec3, enclosure: &Enclosure) -> Sides {
     let mut sides = Sides::default();
-    if !room.contains(position) {
+    if !enclosure.contains(position) {
         return sides;
     }
-    let far = f64::from(room.diagonal() / FAR);
+    let far = f64::from(enclosure.diagonal() / FAR);
     let position = position.as_dvec3();
     for &(bit, point, normal) in planes {
         let (point, normal) = (point.as_dvec3(), normal.as_dvec3());
-        let error =
-            ROUNDING * normal.abs().dot(room.farthest(point) + room.farthest(position)) + f64::from(f32::MIN_POSITIVE);
+        let error = ROUNDING * normal.abs().dot(enclosure.farthest(point) + enclosure.farthest(position))
+            + f64::from(f32::MIN_POSITIVE);
         let height = (position - point).dot(normal);
         sides.front |= u64::from(height > error) << bit;
         sides.back |= u64::from(height < -error) << bit;
@@ -286,32 +290,32 @@ mod tests {
         ];
         let planes: Vec<Plane> =
             squares.iter().enumerate().map(|(bit, square)| (bit, square.center, square.normal)).collect();
-        let room = Room { lower: Vec3::splat(-420.0), upper: Vec3::splat(420.0) };
-        let walls = Walls { room, ..Walls::default() };
-        let (mut claimed, mut by_verge, mut hits) = (0, 0, 0);
+        let enclosure = Enclosure { lower: Vec3::splat(-420.0), upper: Vec3::splat(420.0) };
+        let half_spaces = HalfSpaces { enclosure, ..HalfSpaces::default() };
+        let (mut claimed, mut by_tolerance, mut hits) = (0, 0, 0);
         for k in 0..400_000 {
             let from = near(&squares[(k % 4) as usize], k);
             let to = near(&squares[(k / 4 % 4) as usize], k + 1_000_000);
-            let ends = sides_of(&planes, to, &room);
+            let ends = sides_of(&planes, to, &enclosure);
             for rules in [Rules::Original, Rules::Repaired] {
                 let ray = shadow_ray(rules, from, to - from, spawn_epsilon(rules, from, 300.0));
                 for (index, square) in squares.iter().enumerate() {
                     let height = (square.center - from).dot(square.normal);
                     let sides = Sides { front: u64::from(height <= 0.0), back: u64::from(height >= 0.0), far: 0 };
-                    let verge = walls.verge(rules, spawn_epsilon(rules, from, 300.0));
-                    let start = Stand { sides, on: u64::from(height.abs() <= verge) };
+                    let plane_tolerance = half_spaces.plane_tolerance(rules, spawn_epsilon(rules, from, 300.0));
+                    let start = RayStart { sides, on: u64::from(height.abs() <= plane_tolerance) };
                     let bit = |mask: u64| mask >> index & 1;
                     let ends = Sides { front: bit(ends.front), back: bit(ends.back), far: bit(ends.far) };
                     let (hit, crossed) = (intersect_square(square, &ray).is_some(), start.shared(ends).crossed(1));
                     assert!(!hit || crossed == 1, "square {index} between {from} and {to}");
                     claimed += 1 - crossed;
-                    by_verge += Stand { sides, on: 0 }.shared(ends).crossed(1) - crossed;
+                    by_tolerance += RayStart { sides, on: 0 }.shared(ends).crossed(1) - crossed;
                     hits += u32::from(hit);
                 }
             }
         }
-        println!("{claimed} of 3200000 need no test, {by_verge} as they begin so near; {hits} are hit");
-        assert!(claimed > 1_500_000 && by_verge > 10_000 && hits > 100_000);
+        println!("{claimed} of 3200000 need no test, {by_tolerance} as they begin so near; {hits} are hit");
+        assert!(claimed > 1_500_000 && by_tolerance > 10_000 && hits > 100_000);
     }
 
     #[test]
@@ -332,18 +336,18 @@ mod tests {
         root.set_child(0, (Vec3::splat(-4.0), Vec3::splat(4.0)), ChildRef::Square(0));
         let geometry = Geometry { nodes: &[root], triangles: &[], spheres: &[], squares: &[square] };
         let tracer = Tracer::new(geometry, Rules::Original, Simd::Off);
-        let walls = |vpls: &[Vpl]| Walls::new(&tracer, &LightTree::build(vpls, TreeLayout::Wide));
+        let half_spaces = |vpls: &[Vpl]| HalfSpaces::new(&tracer, &LightTree::build(vpls, TreeLayout::Wide));
         let sides = |heights: &[f32]| {
-            let sides = walls(&heights.iter().map(|&y| vpl(y)).collect::<Vec<_>>()).sides(0);
+            let sides = half_spaces(&heights.iter().map(|&y| vpl(y)).collect::<Vec<_>>()).sides(0);
             (sides.front & 1, sides.back & 1)
         };
         assert_eq!(sides(&[-2.0, -3.0]), (1, 0));
         assert_eq!(sides(&[2.0, 3.0]), (0, 1));
         assert_eq!(sides(&[2.0, -3.0]), (0, 0));
-        assert_eq!(sides(&[2.0, 30.0]), (0, 0), "outside of the room");
+        assert_eq!(sides(&[2.0, 30.0]), (0, 0), "outside of the enclosure");
         let is_turned_away = |vpls: &[Vpl], normal: Vec3| {
-            let walls = walls(vpls);
-            walls.is_turned_away(0, walls.outlook(normal))
+            let half_spaces = half_spaces(vpls);
+            half_spaces.is_turned_away(0, half_spaces.facing(normal))
         };
         assert!(is_turned_away(&[vpl(2.0), vpl(3.0)], Vec3::Y));
         assert!(!is_turned_away(&[vpl(2.0), vpl(3.0)], Vec3::NEG_Y));

@@ -1,0 +1,107 @@
+//! Which model of light an option belongs to: marked in the help, and looked up among those that were typed.
+
+use super::{AFTER_HELP, Cli, RenderArgs, SettingFlags};
+use clap::{Arg, Command, CommandFactory, FromArgMatches};
+use lightcuts::rendering::{Model, Scope, keys_of};
+use toml::Table;
+
+/// Options of one model that are no settings.
+const OTHERS: [(&str, Model); 4] = [
+    ("read-vpls", Model::Thesis),
+    ("write-vpls", Model::Thesis),
+    ("station-device", Model::Thesis),
+    ("crease-angle", Model::Physical),
+];
+
+/// What the marks in the help mean.
+const LEGEND: &str = "\
+Options marked (thesis) or (physical) belong to that model of light alone and are errors in the other one.";
+
+/// Parses the command line; help, version and errors end the program here.
+pub(crate) fn parse() -> Cli {
+    let parsed = Cli::from_arg_matches(&command().get_matches());
+    parsed.unwrap_or_else(|error| error.format(&mut command()).exit())
+}
+
+/// The command line's declaration, with its model in the help of each option that belongs to one.
+pub(crate) fn command() -> Command {
+    let after = format!("{LEGEND}\n\n{AFTER_HELP}");
+    Cli::command().mut_subcommand("render", |render| render.mut_args(marked).after_help(after))
+}
+
+/// The scope of an option, whose id is its key in job files: `None` for those that concern no model.
+pub(crate) fn scope_of(id: &str) -> Option<Scope> {
+    let other = OTHERS.iter().find(|(name, _)| *name == id).map(|(_, model)| Scope::Only(*model));
+    other.or_else(|| Scope::of(id))
+}
+
+fn marked(arg: Arg) -> Arg {
+    let Some(Scope::Only(model)) = scope_of(arg.get_id().as_str()) else { return arg };
+    let [short, long] =
+        [arg.get_help(), arg.get_long_help()].map(|help| help.map(|text| mark(&text.to_string(), model)));
+    let arg = short.into_iter().fold(arg, Arg::help);
+    long.into_iter().fold(arg, Arg::long_help)
+}
+
+/// `text` with the model behind its first sentence, before the default.
+fn mark(text: &str, model: Model) -> String {
+    let paragraph = text.find("\n\n").unwrap_or(text.len());
+    let place = text[..paragraph].find("[default: ").unwrap_or(paragraph);
+    let (before, after) = text.split_at(place);
+    let gap = if after.starts_with('[') { " " } else { "" };
+    format!("{} ({}){gap}{after}", before.trim_end(), model.name())
+}
+
+impl SettingFlags {
+    /// The tables of a job file with the keys that were given.
+    pub(crate) fn table(&self) -> Table {
+        Table::try_from(self).expect("flags are numbers, words and switches")
+    }
+
+    /// The option that sets `table.key`, as it was or could be typed.
+    pub(crate) fn option_for(&self, key: &str) -> String {
+        match key {
+            "image.width" if self.image.has_size() => "the width of --size".to_owned(),
+            "image.height" if self.image.has_size() => "the height of --size".to_owned(),
+            key => typed(key),
+        }
+    }
+}
+
+impl RenderArgs {
+    /// The options given that have no meaning in a model of light, as they were typed.
+    pub(crate) fn foreign_options(&self, model: Model) -> Vec<String> {
+        let others = [
+            ("read-vpls", self.job.read_vpls.is_some()),
+            ("write-vpls", self.output.write_vpls.is_some()),
+            ("station-device", self.performance.devices.has_stations()),
+            ("crease-angle", self.job.crease.angle.is_some()),
+        ];
+        let others = others.into_iter().filter(|(_, is_given)| *is_given).map(|(id, _)| id.to_owned());
+        let given = keys_of(&self.settings.table()).into_iter().chain(others);
+        let foreign = given.filter(|id| scope_of(id).is_some_and(|scope| !scope.includes(model)));
+        foreign.map(|id| typed(&id)).collect()
+    }
+}
+
+/// The option with this id, or the id where there is none.
+fn typed(id: &str) -> String {
+    let command = Cli::command();
+    let arg =
+        command.find_subcommand("render").and_then(|render| render.get_arguments().find(|arg| arg.get_id() == id));
+    arg.and_then(Arg::get_long).map_or_else(|| id.to_owned(), |long| format!("--{long}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_stand_behind_the_first_sentence() {
+        let model = Model::Physical;
+        assert_eq!(mark("Stop [default: 0]", model), "Stop (physical) [default: 0]");
+        assert_eq!(mark("Stop [default: 0]\n\nNow.", model), "Stop (physical) [default: 0]\n\nNow.");
+        assert_eq!(mark("Write it.\n\nNow.", model), "Write it. (physical)\n\nNow.");
+        assert_eq!(mark("Write it", model), "Write it (physical)");
+    }
+}
