@@ -192,7 +192,10 @@ const BODIES: &[(&str, &str)] = &[
         "13:10: `center` is",
     ),
     // Lights.
-    ("[[light]]\ntype = \"area\"", "8:8: unknown type `area`: did you mean `rectangle`?; expected one of `point`, `spot`"),
+    (
+        "[[light]]\ntype = \"area\"",
+        "8:8: unknown type `area`: did you mean `rectangle`?; expected one of `point`, `spot`",
+    ),
     ("[[light]]\ntype = \"point\"\nposition = [0, 0, 0]", "7:1: `intensity` or `power` is missing"),
     ("[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = 1\npower = 1", "11:9: `power` beside `intensity`"),
     ("[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\npower = -1", "10:9: `power`: intensity is"),
