@@ -81,7 +81,9 @@ fn places(positions: &[Vec3]) -> Vec<u32> {
     order.sort_unstable_by_key(|&i| (key(i), i));
     let mut places = vec![0; positions.len()];
     for same in order.chunk_by(|a, b| key(*a) == key(*b)) {
-        same.iter().for_each(|&i| places[i as usize] = same[0]);
+        for &i in same {
+            places[i as usize] = same[0];
+        }
     }
     places
 }

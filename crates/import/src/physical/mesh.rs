@@ -151,7 +151,9 @@ impl<'d> Builder<'d> {
         let triangles = &mut self.scene.meshes[copy.0 as usize].triangles;
         for (run, material) in model.material_runs(triangles.len()) {
             let id = converted[material].map(|converted| converted.id);
-            triangles[run].iter_mut().for_each(|triangle| triangle.material = id);
+            for triangle in &mut triangles[run] {
+                triangle.material = id;
+            }
         }
         let is_complete = triangles.iter().all(|triangle| triangle.material.is_some());
         let first = converted.iter().flatten().next().filter(|_| is_complete).map(|first| first.id);

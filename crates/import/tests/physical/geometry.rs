@@ -82,7 +82,7 @@ fn colours_of_vertices_are_said_to_be_unused() {
     }
     assert!(objects("m.obj", b"v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nf 1 2 3\n", &[""]).1.is_empty());
     for colors in ["red green blue", "red green blue alpha", "diffuse_red diffuse_green diffuse_blue"] {
-        let properties: String = colors.split(' ').map(|name| format!("property uchar {name}\n")).collect();
+        let properties: String = colors.split(' ').flat_map(|name| ["property uchar ", name, "\n"]).collect();
         let values = " 255".repeat(colors.split(' ').count());
         let text = format!(
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{properties}\

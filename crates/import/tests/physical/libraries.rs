@@ -266,8 +266,11 @@ fn no_damage_ends_the_program() {
     for i in 0..model.len().max(library.len()) {
         for byte in [b'0', b' ', b'-', b'#', b'\\', b'\n', b'9', 0xff] {
             let [mut broken_model, mut broken_library] = [model, library].map(|text| text.as_bytes().to_vec());
-            broken_model.get_mut(i).into_iter().for_each(|place| *place = byte);
-            broken_library.get_mut(i).into_iter().for_each(|place| *place = byte);
+            for text in [&mut broken_model, &mut broken_library] {
+                if let Some(place) = text.get_mut(i) {
+                    *place = byte;
+                }
+            }
             parse(&broken_model, library.as_bytes());
             parse(model.as_bytes(), &broken_library);
         }

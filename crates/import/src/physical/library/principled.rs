@@ -34,7 +34,7 @@ impl Converter<'_, '_> {
         if metalness <= 0.0 {
             return body;
         }
-        let metal = self.metal(base, roughness);
+        let metal = metal(base, roughness);
         self.mixed(body, metal, metalness)
     }
 
@@ -96,21 +96,6 @@ impl Converter<'_, '_> {
         Some(Scattering::Dielectric { ior, roughness, transmittance })
     }
 
-    /// A metal. The one of indices has one colour: a texture becomes a Phong lobe as wide, or a mirror.
-    fn metal(&mut self, base: Tint, roughness: f32) -> Scattering {
-        if base.image.is_none() {
-            let Metal { eta, k } = Metal::of_reflectance(base.color);
-            return Scattering::Conductor { eta, k, roughness };
-        }
-        let width_sq = roughness.powi(4);
-        // The exponent at which the lobe of a microfacet distribution is as wide (Walter et al. 2007, equation 30).
-        let exponent = 2.0 / width_sq - 2.0;
-        if exponent >= MAX_EXPONENT {
-            return Scattering::Mirror { reflectance: base };
-        }
-        Scattering::Phong { diffuse: Vec3::ZERO.into(), specular: base, exponent: exponent.max(1.0) }
-    }
-
     /// The second with this share, else the first.
     fn mixed(&mut self, first: Scattering, second: Scattering, share: f32) -> Scattering {
         if share >= 1.0 {
@@ -122,4 +107,19 @@ impl Converter<'_, '_> {
         });
         Scattering::Mix { first, second, weight: share, image: None }
     }
+}
+
+/// A metal. The one of indices has one colour: a texture becomes a Phong lobe as wide, or a mirror.
+fn metal(base: Tint, roughness: f32) -> Scattering {
+    if base.image.is_none() {
+        let Metal { eta, k } = Metal::of_reflectance(base.color);
+        return Scattering::Conductor { eta, k, roughness };
+    }
+    let width_sq = roughness.powi(4);
+    // The exponent at which the lobe of a microfacet distribution is as wide (Walter et al. 2007, equation 30).
+    let exponent = 2.0 / width_sq - 2.0;
+    if exponent >= MAX_EXPONENT {
+        return Scattering::Mirror { reflectance: base };
+    }
+    Scattering::Phong { diffuse: Vec3::ZERO.into(), specular: base, exponent: exponent.max(1.0) }
 }
