@@ -1,7 +1,8 @@
 //! The stations of the renderer: place VPLs, build the light tree, gather, develop.
 //!
 //! [`render`] takes a [`World`] and [`Settings`] and returns a [`Rendering`]. The same settings give the same picture bit
-//! for bit on any number of threads, with or without SIMD.
+//! for bit on any number of threads, with or without SIMD. [`render_physical`] is the same for a [`PhysicalWorld`], but for the
+//! settings that go by measured times: a time limit, and the choices `auto` of integrator and strategy.
 
 mod cpu;
 mod crew;
@@ -40,7 +41,7 @@ pub use settings::{
     Run, Sampling, Settings, SettingsError, Strategy, TomlFault, ToneMappingKind, VplPlacement, overlay, value_at,
 };
 pub use stations::{PerStation, Station, Stations};
-pub use stats::{PartTime, PassTime, Rays, StationDevice, Stats, TreeVisits, VplWork};
+pub use stats::{End, PartTime, PassTime, Rays, StationDevice, Stats, TreeVisits, VplWork};
 pub use vpl_csv::{VplCsvError, vpls_from_csv, vpls_to_csv};
 
 use cpu::CpuDevice;

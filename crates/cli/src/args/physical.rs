@@ -19,10 +19,13 @@ pub(crate) struct PhysicalFlags {
     integrator: Option<String>,
     /// Stop after this time, such as 10s, 2m or 1.5h; 0 for no limit [default: 0]
     ///
-    /// Samples are taken until then, but no more than --samples. The first pass is finished whatever time it takes.
+    /// Rendering is over then, however large the picture: pixels that got no sample in time show the nearest one that has.
+    /// Reading the scene and writing files come on top. There is no other limit of samples unless --samples is given.
     #[arg(long, value_name = "TIME")]
     time_limit: Option<Seconds>,
     /// Stop when the pixels' relative error, as a root mean square, is this small, such as 0.02; 0 for never [default: 0]
+    ///
+    /// It is looked at every four passes. There is no other limit of samples unless --samples is given.
     #[arg(long, value_name = "X")]
     noise: Option<f32>,
     /// VPLs of each pass, about [default: 2000]

@@ -24,8 +24,8 @@ pub(crate) struct RunFlags {
     reproduce: Option<bool>,
     /// Seed of the random numbers [default: 1]
     ///
-    /// The same job and seed give the same picture, bit for bit, on any number of threads. Change it to see how much of a
-    /// picture is chance.
+    /// The same job and seed give the same picture, bit for bit, on any number of threads; not where measured times decide:
+    /// with --time-limit, --integrator auto or --gather auto. Change it to see how much of a picture is chance.
     #[arg(long, value_name = "N")]
     seed: Option<u32>,
     /// Longest chain of mirrored and refracted rays, the camera's included, 1 to 12 [default: 4]
@@ -76,10 +76,11 @@ pub(crate) struct SamplingFlags {
     /// points, the smoothest edges for the time. `best-candidate`: blue noise.
     #[arg(long, value_parser = ["stratified", "low-discrepancy", "best-candidate"])]
     sampler: Option<String>,
-    /// Samples of every pixel, 1 to 4096 [default: 1]
+    /// Samples of every pixel, 1 to 4096; of the physical model 1 to 2^24 [default: 1, physical model 64]
     ///
     /// The time is proportional to it. 4 to 16 make smooth edges. VPLs stay as many: their probability is shared out over
-    /// the camera's rays.
+    /// the camera's rays. Of the physical model 0 is no limit where --time-limit or --noise is one, and that is the default
+    /// with them.
     #[arg(long, short = 's', value_name = "N")]
     samples: Option<u32>,
     /// Samples of pixels that differ from a neighbour; none unless above --samples [default: 0]

@@ -17,6 +17,11 @@ pub(crate) fn resolve(scene: &Settings, files: &[JobFile], flags: &SettingFlags)
     }
     let flags = Table::try_from(flags).map_err(|error| unexpected(&error))?;
     overlay(&mut table, &flags);
+    let is_given =
+        files.iter().map(|file| &file.settings).chain([&flags]).any(|given| is_set(given, "sampling.samples"));
+    if !is_given {
+        lift_samples(&mut table);
+    }
     let settings: Settings = table.try_into().map_err(|error: toml::de::Error| unexpected(&error.message()))?;
     settings.validate().map_err(|error| {
         let culprit = files.iter().rev().find_map(|file| Some((file, file.span_of(&error.name)?)));
@@ -27,6 +32,15 @@ pub(crate) fn resolve(scene: &Settings, files: &[JobFile], flags: &SettingFlags)
         }
     })?;
     Ok(settings)
+}
+
+/// Where time or noise ends a render of the physical model, there is no number of samples that would end it earlier unless one is
+/// given.
+fn lift_samples(table: &mut Table) {
+    let has_other_limit = table.clone().try_into().is_ok_and(|settings: Settings| settings.has_other_limit());
+    if let Some(sampling) = table.get_mut("sampling").and_then(Value::as_table_mut).filter(|_| has_other_limit) {
+        sampling.insert("samples".to_owned(), Value::Integer(0));
+    }
 }
 
 /// Tables and keys that matter in the thesis' model of light only.

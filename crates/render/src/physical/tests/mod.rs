@@ -2,5 +2,6 @@
 
 mod agreement;
 mod closed_forms;
+mod limits;
 mod oracle;
 mod scenes;
