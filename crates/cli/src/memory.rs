@@ -84,6 +84,7 @@ fn mebibytes(bytes: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lightcuts::scene::Location;
     use lightcuts::scene::physical::{
         EnvironmentDesc, PhysicalObject, PhysicalScene, PhysicalShape, SurfaceDesc, SurfaceId,
     };
@@ -92,7 +93,7 @@ mod tests {
     /// A large ball, half in the dark.
     fn scene() -> PhysicalScene {
         let shape = PhysicalShape::Sphere { center: [0.0, 0.0, -3.0].into(), radius: 2.0 };
-        let (material, location) = (SurfaceId(0), Default::default());
+        let (material, location) = (SurfaceId(0), Location::default());
         PhysicalScene {
             objects: vec![PhysicalObject { name: String::new(), shape, material, location }],
             materials: vec![SurfaceDesc::default()],
@@ -100,7 +101,7 @@ mod tests {
                 radiance: [1.0; 3].into(),
                 image: None,
                 degrees: 0.0,
-                location: Default::default(),
+                location: Location::default(),
             }),
             ..PhysicalScene::default()
         }

@@ -60,8 +60,8 @@ pub(crate) fn summary(statistics: &Statistics<'_>, written: &[&Path]) -> String 
         let _ = writeln!(text, "{name:<12} {value}");
     };
     line("scene", &format!("{} ({})", statistics.scene, statistics.scene_file));
-    line("picture", &format!("{} x {}", size.width, size.height));
-    line("samples", &samples(stats, settings.run.model));
+    let samples = samples(stats, settings.run.model);
+    line("picture", &format!("{} x {}, samples {samples}", size.width, size.height));
     if settings.run.model == Model::Thesis {
         line("VPLs", &stats.vpl_count.to_string());
         line("light ratio", &format!("{:.4} %", stats.light_ratio_percent));
@@ -76,9 +76,7 @@ pub(crate) fn summary(statistics: &Statistics<'_>, written: &[&Path]) -> String 
         line("faults", &faults(stats.device_faults));
     }
     for pass in &stats.passes {
-        // Of the physical model: not the line above.
-        let name = if pass.name == Stage::Samples.name() { "rendering" } else { &pass.name };
-        line(&name.replace('_', " "), &format!("{:.2} s, CPU {:.2} s", pass.wall_s, pass.cpu_s));
+        line(&pass.name.replace('_', " "), &format!("{:.2} s, CPU {:.2} s", pass.wall_s, pass.cpu_s));
     }
     let memory = statistics.peak_memory_bytes.map_or(String::new(), |bytes| format!(", {} MiB", bytes >> 20));
     line("total", &format!("{:.2} s, CPU {:.2} s{memory}", stats.total_wall_s, stats.total_cpu_s));

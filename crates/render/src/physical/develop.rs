@@ -3,7 +3,7 @@
 use super::mixture::{Canvas, MOST_TECHNIQUES, Mixture};
 use super::pass::PixelSums;
 use super::rendering::PhysicalRendering;
-use super::sketch::{Glimpse, Sketch};
+use super::sketch::{Glimpse, Sketch, Source};
 use crate::film::Film;
 use crate::stats::Stats;
 use bytemuck::Zeroable;
@@ -26,8 +26,9 @@ struct Darkroom<'a> {
     /// Of each tile.
     weights: Vec<Weights>,
     dark: f64,
-    /// What pixels without samples show.
+    /// What pixels without samples show, and where it is, bottom row first.
     sketch: Option<&'a Sketch>,
+    sources: Vec<Option<Source>>,
 }
 
 /// Sums over pixels: squares of their errors, as far as they are known.
@@ -79,9 +80,9 @@ impl Mixture {
         });
         let variance = room.plane(|i, j| room.variance(i, j).unwrap_or(0.0) as f32);
         // What is not needed any more makes room for the rest.
-        let weights = room.weights;
+        let Darkroom { weights, sources, .. } = room;
         self.canvases.clear();
-        let room = Darkroom { mixture: &self, weights, dark: 0.0, sketch };
+        let room = Darkroom { mixture: &self, weights, dark: 0.0, sketch, sources };
         let over = |sum: Vec3, count: u32| if count == 0 { [0.0; 3] } else { (sum / count as f32).to_array() };
         let mean = |sum: f32, count: u32| if count == 0 { 0.0 } else { sum / count as f32 };
         PhysicalRendering {
@@ -108,7 +109,16 @@ impl<'a> Darkroom<'a> {
         let weights_of =
             |tile| Some(mixture.weights(tile)).filter(|weights| weights.iter().any(|&weight| weight > 0.0));
         let weights = (0..mixture.tiles().len()).map(weights_of).collect();
-        Self { mixture, weights, dark: mixture.dark(), sketch }
+        let mut room = Self { mixture, weights, dark: mixture.dark(), sketch, sources: Vec::new() };
+        if let Some(sketch) = sketch {
+            let mut sources = vec![None; mixture.width * mixture.height];
+            sources.par_chunks_mut(mixture.width).enumerate().for_each(|(j, row)| {
+                let unsampled = row.iter_mut().enumerate().filter(|(i, _)| room.weights(*i, j).is_none());
+                unsampled.for_each(|(i, source)| *source = sketch.nearest(i, j));
+            });
+            room.sources = sources;
+        }
+        room
     }
 
     fn weights(&self, i: usize, j: usize) -> Weights {
@@ -118,7 +128,7 @@ impl<'a> Darkroom<'a> {
     /// A pixel's colour on the films of all canvases together, or of the sketch.
     fn color(&self, i: usize, j: usize, film: impl Fn(&Canvas) -> &Film, sketched: impl Fn(&Glimpse) -> Vec3) -> Vec3 {
         let Some(weights) = self.weights(i, j) else {
-            return self.glimpse(i, j).map_or(Vec3::ZERO, |(_, glimpse)| sketched(glimpse));
+            return self.glimpse(i, j).map_or(Vec3::ZERO, sketched);
         };
         let of = |(canvas, weight): (&Option<Canvas>, f64)| {
             canvas.as_ref().filter(|_| weight > 0.0).map(|canvas| film(canvas).mean(i, j) * weight as f32)
@@ -126,15 +136,19 @@ impl<'a> Darkroom<'a> {
         self.mixture.canvases.iter().zip(weights).filter_map(of).sum()
     }
 
-    fn glimpse(&self, i: usize, j: usize) -> Option<(bool, &Glimpse)> {
-        self.sketch?.nearest(i, j)
+    fn source(&self, i: usize, j: usize) -> Option<Source> {
+        *self.sources.get(j * self.mixture.width + i)?
+    }
+
+    fn glimpse(&self, i: usize, j: usize) -> Option<&Glimpse> {
+        Some(self.sketch?.glimpse(self.source(i, j)?))
     }
 
     /// What a pixel's samples saw, or the nearest sample of the sketch.
     fn sums(&self, i: usize, j: usize) -> PixelSums {
         match self.weights(i, j) {
             Some(_) => self.mixture.pixels[j * self.mixture.width + i],
-            None => self.glimpse(i, j).map_or_else(PixelSums::default, |(_, glimpse)| glimpse.sums),
+            None => self.glimpse(i, j).map_or_else(PixelSums::default, |glimpse| glimpse.sums),
         }
     }
 
@@ -142,7 +156,10 @@ impl<'a> Darkroom<'a> {
     fn samples(&self, i: usize, j: usize) -> u32 {
         match self.weights(i, j) {
             Some(_) => self.mixture.pixels[j * self.mixture.width + i].samples,
-            None => u32::from(self.glimpse(i, j).is_some_and(|(is_own, _)| is_own)),
+            None => {
+                let is_own = |(sketch, source): (&Sketch, Source)| sketch.is_at(source, i, j);
+                u32::from(self.sketch.zip(self.source(i, j)).is_some_and(is_own))
+            }
         }
     }
 

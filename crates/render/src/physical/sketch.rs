@@ -7,6 +7,7 @@ use super::pass::{PixelSums, SamplePass};
 use bytemuck::Zeroable;
 use glam::Vec3;
 use rayon::prelude::*;
+use std::num::NonZeroU32;
 
 /// Cells of the first, coarsest level at most. It is sampled whatever happens, so that there is something to show everywhere.
 const FIRST_CELLS: usize = 256;
@@ -33,6 +34,30 @@ struct Level {
     columns: usize,
     /// Bottom row first. Pixels of the level before are there, not here.
     seen: Vec<Glimpse>,
+}
+
+/// Where a glimpse is: one more than its cell's number in the lower bits, and its level in the upper ones. Pictures have fewer than 2^28
+/// pixels, and so a dozen levels at most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Source(NonZeroU32);
+
+impl Source {
+    const CELL_BITS: u32 = 28;
+
+    fn new(level: usize, cell: usize) -> Self {
+        Self(NonZeroU32::MIN.saturating_add((level as u32) << Self::CELL_BITS | cell as u32))
+    }
+
+    /// Numbers of the level and of the cell.
+    fn place(self) -> (usize, usize) {
+        let place = self.0.get() - 1;
+        ((place >> Self::CELL_BITS) as usize, (place & ((1 << Self::CELL_BITS) - 1)) as usize)
+    }
+}
+
+/// The cell whose pixel is nearest, along a side of the picture.
+fn nearest_cell(at: usize, cell: usize, length: usize) -> usize {
+    ((at + cell / 2) / cell).min(length.div_ceil(cell) - 1)
 }
 
 /// Levels from the coarsest on, each with cells half as large as the one before.
@@ -87,25 +112,35 @@ impl Sketch {
         Level { cell, columns: columns_of(cell), seen: bytemuck::zeroed_vec(cells_of(cell)) }
     }
 
-    /// A cell's glimpse, which may be that of a larger cell with the same pixel.
-    fn at(&self, mut level: usize, mut column: usize, mut row: usize) -> &Glimpse {
+    /// Where a cell's glimpse is: a larger cell may have the same pixel.
+    fn place(&self, mut level: usize, mut column: usize, mut row: usize) -> Source {
         while level > 0 && column.is_multiple_of(2) && row.is_multiple_of(2) {
             (level, column, row) = (level - 1, column / 2, row / 2);
         }
-        let Level { columns, seen, .. } = &self.levels[level];
-        &seen[row * columns + column]
+        Source::new(level, row * self.levels[level].columns + column)
     }
 
-    /// The glimpse that is nearest to a pixel, and whether it is its own; nothing before the first level.
-    pub(crate) fn nearest(&self, i: usize, j: usize) -> Option<(bool, &Glimpse)> {
+    /// What is seen at a source.
+    pub(crate) fn glimpse(&self, source: Source) -> &Glimpse {
+        let (level, cell) = source.place();
+        &self.levels[level].seen[cell]
+    }
+
+    /// The source that is nearest to a pixel; nothing before the first level.
+    pub(crate) fn nearest(&self, i: usize, j: usize) -> Option<Source> {
         let of_level = |k: usize| {
-            let Level { cell, .. } = self.levels[k];
-            let place = |at: usize, length: usize| ((at + cell / 2) / cell).min(length.div_ceil(cell) - 1);
-            let (column, row) = (place(i, self.width), place(j, self.height));
-            let glimpse = self.at(k, column, row);
-            (glimpse.sums.samples > 0).then_some(((column * cell, row * cell) == (i, j), glimpse))
+            let cell = self.levels[k].cell;
+            let source = self.place(k, nearest_cell(i, cell, self.width), nearest_cell(j, cell, self.height));
+            (self.glimpse(source).sums.samples > 0).then_some(source)
         };
         (0..self.levels.len()).rev().find_map(of_level)
+    }
+
+    /// Whether a source is the pixel itself.
+    pub(crate) fn is_at(&self, source: Source, i: usize, j: usize) -> bool {
+        let (level, number) = source.place();
+        let Level { cell, columns, .. } = self.levels[level];
+        (number % columns * cell, number / columns * cell) == (i, j)
     }
 
     /// What the light of each pixel is, as a sum of channels, bottom row first: mean over its cell's neighbourhood, of reflected
@@ -118,7 +153,7 @@ impl Sketch {
             let (mut sum, mut samples) = (0.0, 0);
             for row in row.saturating_sub(REACH)..=(row + REACH).min(rows - 1) {
                 for column in column.saturating_sub(REACH)..=(column + REACH).min(columns - 1) {
-                    let sums = &self.at(last, column, row).sums;
+                    let sums = &self.glimpse(self.place(last, column, row)).sums;
                     (sum, samples) = (sum + sums.reflected, samples + sums.samples);
                 }
             }
@@ -128,11 +163,10 @@ impl Sketch {
             .into_par_iter()
             .flat_map_iter(|row| (0..columns).map(move |column| smooth(row, column)))
             .collect();
-        let place = |at: usize, count: usize| ((at + cell / 2) / cell).min(count - 1);
         let mut light: Vec<f32> = bytemuck::zeroed_vec(self.width * self.height);
         light.par_chunks_mut(self.width).enumerate().for_each(|(j, row)| {
-            let cells = &of_cells[place(j, rows) * columns..][..columns];
-            row.iter_mut().enumerate().for_each(|(i, light)| *light = cells[place(i, columns)]);
+            let cells = &of_cells[nearest_cell(j, *cell, self.height) * columns..][..columns];
+            row.iter_mut().enumerate().for_each(|(i, light)| *light = cells[nearest_cell(i, *cell, self.width)]);
         });
         light
     }

@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 /// Steps of a render whose end time or noise decides.
 const THOUSANDTHS: u64 = 1000;
 
-/// Time to make a picture of the samples, for each pixel: what is left of a limit of time for it. Measured: 15 to 30 ns on two
-/// cores, of which memory that is touched for the first time is the most.
-const DEVELOPING: Duration = Duration::from_nanos(25);
+/// Time to make a picture of the samples, for each pixel: what is left of a limit of time for it, on two cores. Much of it goes into
+/// memory that is touched for the first time.
+const DEVELOPING: Duration = Duration::from_nanos(40);
 
 /// Watches the time, the samples and the person at the other end.
 pub(crate) struct Watch<'a> {
