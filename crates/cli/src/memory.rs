@@ -26,6 +26,9 @@ const LAYERS: u64 = 100;
 const WRITING_EXR: u64 = 175;
 const WRITING_PNG: u64 = 60;
 
+/// The program itself, its threads and tables, in bytes.
+const PROGRAM: u64 = 32 << 20;
+
 /// Of each VPL of a pass, in bytes, with those that were judged and not kept, and the tree.
 const VPL: u64 = 500;
 
@@ -46,7 +49,7 @@ fn need(settings: &Settings, files: &[(Kind, PathBuf)]) -> u64 {
     let developing = SUMS + LAYERS;
     let is_written = |kind| files.iter().any(|(of, _)| *of == kind);
     let writing = if is_written(Kind::Exr) { WRITING_EXR } else { WRITING_PNG };
-    pixels * rendering.max(developing).max(LAYERS + writing) + u64::from(vpls) * VPL
+    PROGRAM + pixels * rendering.max(developing).max(LAYERS + writing) + u64::from(vpls) * VPL
 }
 
 /// Fails if a job does not fit into free memory and swap: running out of them would end the process in the middle of the render.

@@ -111,7 +111,7 @@ impl<'a> Darkroom<'a> {
         let weights = (0..mixture.tiles().len()).map(weights_of).collect();
         let mut room = Self { mixture, weights, dark: mixture.dark(), sketch, sources: Vec::new() };
         if let Some(sketch) = sketch {
-            let mut sources = vec![None; mixture.width * mixture.height];
+            let mut sources: Vec<Option<Source>> = vec![None; mixture.width * mixture.height];
             sources.par_chunks_mut(mixture.width).enumerate().for_each(|(j, row)| {
                 let unsampled = row.iter_mut().enumerate().filter(|(i, _)| room.weights(*i, j).is_none());
                 unsampled.for_each(|(i, source)| *source = sketch.nearest(i, j));
