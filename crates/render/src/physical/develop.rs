@@ -154,13 +154,11 @@ impl<'a> Darkroom<'a> {
 
     /// Number of the pixel's own samples.
     fn samples(&self, i: usize, j: usize) -> u32 {
-        match self.weights(i, j) {
-            Some(_) => self.mixture.pixels[j * self.mixture.width + i].samples,
-            None => {
-                let is_own = |(sketch, source): (&Sketch, Source)| sketch.is_at(source, i, j);
-                u32::from(self.sketch.zip(self.source(i, j)).is_some_and(is_own))
-            }
+        if self.weights(i, j).is_some() {
+            return self.mixture.pixels[j * self.mixture.width + i].samples;
         }
+        let is_own = |(sketch, source): (&Sketch, Source)| sketch.is_at(source, i, j);
+        u32::from(self.sketch.zip(self.source(i, j)).is_some_and(is_own))
     }
 
     /// Variance of a pixel's brightness; `None` if its samples do not tell.
