@@ -121,8 +121,8 @@ impl<'a> Darkroom<'a> {
         room
     }
 
-    fn weights(&self, i: usize, j: usize) -> Weights {
-        self.weights[self.mixture.tile_of(i, j)]
+    fn weights(&self, i: usize, j: usize) -> Option<&[f64; MOST_TECHNIQUES]> {
+        self.weights[self.mixture.tile_of(i, j)].as_ref()
     }
 
     /// A pixel's colour on the films of all canvases together, or of the sketch.
@@ -130,7 +130,7 @@ impl<'a> Darkroom<'a> {
         let Some(weights) = self.weights(i, j) else {
             return self.glimpse(i, j).map_or(Vec3::ZERO, sketched);
         };
-        let of = |(canvas, weight): (&Option<Canvas>, f64)| {
+        let of = |(canvas, &weight): (&Option<Canvas>, &f64)| {
             canvas.as_ref().filter(|_| weight > 0.0).map(|canvas| film(canvas).mean(i, j) * weight as f32)
         };
         self.mixture.canvases.iter().zip(weights).filter_map(of).sum()
@@ -145,11 +145,9 @@ impl<'a> Darkroom<'a> {
     }
 
     /// What a pixel's samples saw, or the nearest sample of the sketch.
-    fn sums(&self, i: usize, j: usize) -> PixelSums {
-        match self.weights(i, j) {
-            Some(_) => self.mixture.pixels[j * self.mixture.width + i],
-            None => self.glimpse(i, j).map_or_else(PixelSums::default, |glimpse| glimpse.sums),
-        }
+    fn sums(&self, i: usize, j: usize) -> &PixelSums {
+        let own = &self.mixture.pixels[j * self.mixture.width + i];
+        if self.weights(i, j).is_some() { own } else { self.glimpse(i, j).map_or(own, |glimpse| &glimpse.sums) }
     }
 
     /// Number of the pixel's own samples.
@@ -166,7 +164,7 @@ impl<'a> Darkroom<'a> {
         let (weights, mixture) = (self.weights(i, j)?, self.mixture);
         let (pixel, tile) = (j * mixture.width + i, mixture.tile_of(i, j));
         let (mut sum, mut is_known) = (0.0, false);
-        for (technique, (canvas, weight)) in mixture.canvases.iter().zip(weights).enumerate() {
+        for (technique, (canvas, &weight)) in mixture.canvases.iter().zip(weights).enumerate() {
             let Some(canvas) = canvas.as_ref().filter(|_| weight > 0.0) else { continue };
             let moments = canvas.moments[pixel];
             let of_sample = match moments.samples {
@@ -210,7 +208,7 @@ impl<'a> Darkroom<'a> {
     }
 
     fn of_sums<T: Copy + Send + Zeroable>(&self, value: impl Fn(&PixelSums) -> T + Sync) -> Plane<T> {
-        self.plane(|i, j| value(&self.sums(i, j)))
+        self.plane(|i, j| value(self.sums(i, j)))
     }
 
     /// A picture from a function of (i, j), j from the bottom. All threads write it: most of the time goes into memory that is
