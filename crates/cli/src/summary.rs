@@ -88,27 +88,24 @@ pub(crate) fn summary(statistics: &Statistics<'_>, written: &[&Path]) -> String 
 
 /// How many samples pixels have, why there are no more of them, and how far they may be from the truth.
 fn samples(stats: &Stats, model: Model) -> String {
-    let mut text = number(stats.samples_per_pixel);
-    if let Some(wanted) = stats.samples_wanted.filter(|_| stats.end != End::Samples) {
-        text += &format!(" of {wanted}");
-    }
-    text += match stats.end {
-        End::Samples => "",
-        End::Time => ", time was up",
-        End::Noise => ", noise low enough",
-        End::Interrupted => ", interrupted",
-    };
+    let mut parts = vec![number(stats.samples_per_pixel)];
+    parts.extend(stats.samples_wanted.filter(|_| stats.end != End::Samples).map(|wanted| format!(" of {wanted}")));
+    parts.extend(match stats.end {
+        End::Samples => None,
+        End::Time => Some(", time was up".to_owned()),
+        End::Noise => Some(", noise low enough".to_owned()),
+        End::Interrupted => Some(", interrupted".to_owned()),
+    });
     if stats.end == End::Interrupted && model == Model::Thesis {
-        let stage = stats.passes.iter().rev().map(|pass| &pass.name).find(|name| *name != Stage::Develop.name());
-        text += &stage.map_or(String::new(), |name| format!(" in the stage {}", name.replace('_', " ")));
+        let mut stages = stats.passes.iter().rev().map(|pass| pass.name.as_ref());
+        let last = stages.find(|&name| name != Stage::Develop.name());
+        parts.extend(last.map(|name| format!(" in the stage {}", name.replace('_', " "))));
     }
-    if let Some(error) = stats.relative_error {
-        text += &format!("; relative error {}", three_digits(error));
-    }
+    parts.extend(stats.relative_error.map(|error| format!("; relative error {}", three_digits(error))));
     if stats.unsampled_pixels > 0 {
-        text += &format!("; {} pixels without one show their neighbours'", stats.unsampled_pixels);
+        parts.push(format!("; {} pixels without one show their neighbours'", stats.unsampled_pixels));
     }
-    text
+    parts.concat()
 }
 
 /// A mean number of samples: whole, or to about a tenth.

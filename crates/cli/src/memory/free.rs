@@ -2,7 +2,7 @@
 //! Linux only.
 
 use std::fs::read_to_string;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Limits from here on are none: version 1 says "no limit" by a number of about 2^63.
 const NO_LIMIT: u64 = 1 << 60;
@@ -93,7 +93,7 @@ fn left_in(folder: &Path, names: &Names, swap: u64) -> Option<u64> {
     })
 }
 
-fn droppable(file: &PathBuf, key: &str) -> u64 {
+fn droppable(file: &Path, key: &str) -> u64 {
     let text = read_to_string(file).unwrap_or_default();
     text.lines().find_map(|line| line.strip_prefix(key)?.trim().parse().ok()).unwrap_or(0)
 }
