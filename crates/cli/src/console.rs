@@ -1,8 +1,10 @@
 //! Standard output and error. Nothing here panics when the reader at the other end of a pipe has gone.
 
 use crate::exit::Failure;
+use indicatif::ProgressBar;
 use miette::{MietteDiagnostic, MietteHandlerOpts, Report, Severity};
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
+use std::sync::{Mutex, PoisonError};
 
 /// Decides once how diagnostics look: in colours on a terminal, and elsewhere without line breaks of our own, so that
 /// `file:line:column` stays in one piece for other programs. Causes are part of our messages already.
@@ -35,9 +37,22 @@ pub(crate) fn print(bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Writes a line to standard error, if anybody still listens.
+/// The bar on standard error, if there is one. A static because signals are told of by a thread that knows no render.
+static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+/// A bar is shown from now on: lines go above it.
+pub(crate) fn share_with(bar: &ProgressBar) {
+    *BAR.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar.clone());
+}
+
+/// Writes a line of its own to standard error, if anybody still listens.
 pub(crate) fn note(line: &str) {
-    let _ = writeln!(stderr().lock(), "{line}");
+    let bar = BAR.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let write = || drop(writeln!(stderr().lock(), "{line}"));
+    match bar.filter(|bar| !bar.is_finished()) {
+        Some(bar) => bar.suspend(write),
+        None => write(),
+    }
 }
 
 /// Shows a warning of one sentence on standard error.

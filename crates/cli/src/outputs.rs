@@ -47,7 +47,7 @@ impl Outputs {
     }
 
     /// Writes all with `write`, going on after a failure; returns the files written and whether that is all.
-    pub(crate) fn write(&self, write: impl Fn(Kind, &Path) -> Result<(), Failure>) -> (Vec<&Path>, Exit) {
+    pub(crate) fn write(&self, mut write: impl FnMut(Kind, &Path) -> Result<(), Failure>) -> (Vec<&Path>, Exit) {
         let (mut written, mut exit) = (Vec::new(), Exit::Done);
         for (kind, path) in &self.files {
             match write(*kind, path) {

@@ -99,7 +99,7 @@ impl Monitor for Progress {
     }
 
     fn note(&self, text: &str) {
-        self.with(|state| tell_note(self.style, &state.bar, text));
+        tell_note(self.style, text);
     }
 
     fn cancelled(&self) -> bool {
@@ -108,10 +108,10 @@ impl Monitor for Progress {
 }
 
 /// Tells what a person should know whatever the style, above the bar if there is one.
-pub(crate) fn tell_note(style: ProgressStyle, bar: &ProgressBar, text: &str) {
+pub(crate) fn tell_note(style: ProgressStyle, text: &str) {
     match style {
         ProgressStyle::Json => console::note(&serde_json::json!({ "note": text }).to_string()),
-        _ => bar.suspend(|| console::note(&format!("lightcuts: {text}"))),
+        _ => console::note(&format!("lightcuts: {text}")),
     }
 }
 
@@ -133,6 +133,7 @@ impl State {
         if let Ok(style) = style {
             self.bar.set_style(style.progress_chars("=> "));
         }
+        console::share_with(&self.bar);
         self.bar.tick();
     }
 

@@ -29,7 +29,7 @@ pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
     if args.output.dry_run {
         return dry_run(plan, args.output.talk.quiet);
     }
-    memory::require_for(plan.job.settings.image)?;
+    memory::require_for(&plan.job.settings, &plan.outputs.files)?;
     memory::keep_freed();
     let progress = Progress::new(args.output.talk.progress, args.output.talk.quiet, logs);
     match &plan.scene {
@@ -43,9 +43,9 @@ pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
             let rendering = lightcuts::render_on(&world, &plan.job.settings, &options, &fleet.stations(), &progress);
             progress.finish();
             devices::log(&fleet);
-            let picture = Picture::Thesis(Box::new(rendering.map_err(|error| out_of_range(&error))?));
+            let picture = rendering.map_err(|error| out_of_range(&error))?.into();
             let device = *fleet.stations().at(Station::Develop);
-            finish(&plan, &picture, Some(device), GpuWork::of(&fleet), args.output.talk.quiet)
+            finish(&plan, picture, Some(device), GpuWork::of(&fleet), args.output.talk.quiet)
         }
         AnyScene::Physical(scene) => {
             devices::require_cpu(&args.performance.devices)?;
@@ -56,8 +56,8 @@ pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {
             let simd = simd(&args.performance);
             let rendering = lightcuts::render_physical(&world, &plan.job.settings, simd, &progress);
             progress.finish();
-            let picture = Picture::Physical(Box::new(rendering.map_err(|error| out_of_range(&error))?));
-            finish(&plan, &picture, None, Vec::new(), args.output.talk.quiet)
+            let picture = rendering.map_err(|error| out_of_range(&error))?.into();
+            finish(&plan, picture, None, Vec::new(), args.output.talk.quiet)
         }
     }
 }
@@ -74,15 +74,16 @@ fn nothing_rendered() -> Exit {
 /// Writes the outputs and sums up.
 fn finish(
     plan: &Plan,
-    picture: &Picture,
+    mut picture: Picture,
     device: Option<&dyn Device>,
     gpu: Vec<GpuWork>,
     quiet: bool,
 ) -> Result<Exit, Failure> {
-    let statistics = Statistics::new(plan, picture.stats(), gpu);
+    let stats = std::mem::take(&mut picture.stats);
+    let statistics = Statistics::new(plan, &stats, gpu);
     let (written, exit) = plan.outputs.write(|kind, path| match kind {
-        Kind::Exr => write_exr(path, picture, &plan.job),
-        Kind::Png => write_png(path, picture, &plan.job, device),
+        Kind::Exr => write_exr(path, &mut picture, &plan.job, stats.complete),
+        Kind::Png => write_png(path, &picture, &plan.job, stats.complete, device),
         Kind::Stats => write(path, &statistics.to_json()?),
         Kind::Vpls => write(path, &picture.vpls_csv()),
         Kind::Job => write(path, &job_text(&plan.job, path)?),
@@ -90,7 +91,7 @@ fn finish(
     if !quiet {
         console::print(summary(&statistics, &written).as_bytes())?;
     }
-    if picture.stats().complete {
+    if stats.complete {
         return Ok(exit);
     }
     let names: Vec<_> = written.iter().map(|path| path.display().to_string()).collect();
@@ -138,23 +139,29 @@ fn options(plan: &Plan, args: &PerformanceArgs) -> Result<Options, Failure> {
 }
 
 /// Texts that go into a picture, apart from the job.
-fn remarks(picture: &Picture) -> Vec<(&'static str, &'static str)> {
-    let complete = (!picture.stats().complete).then_some((COMPLETE_ATTRIBUTE, "false"));
+fn remarks(is_complete: bool) -> Vec<(&'static str, &'static str)> {
+    let complete = (!is_complete).then_some((COMPLETE_ATTRIBUTE, "false"));
     [(VERSION_ATTRIBUTE, env!("CARGO_PKG_VERSION"))].into_iter().chain(complete).collect()
 }
 
-fn write_exr(path: &Path, picture: &Picture, job: &Job) -> Result<(), Failure> {
+fn write_exr(path: &Path, picture: &mut Picture, job: &Job, is_complete: bool) -> Result<(), Failure> {
     let text = job_text(job, path)?;
-    let mut layers = picture.layers();
-    for (name, value) in remarks(picture).into_iter().chain([(JOB_ATTRIBUTE, text.as_str())]) {
+    let layers = &mut picture.layers;
+    for (name, value) in remarks(is_complete).into_iter().chain([(JOB_ATTRIBUTE, text.as_str())]) {
         layers.set_attribute(name, value).map_err(Failure::output)?;
     }
-    image::write_exr(path, &layers).map_err(Failure::output)
+    image::write_exr(path, layers).map_err(Failure::output)
 }
 
-fn write_png(path: &Path, picture: &Picture, job: &Job, device: Option<&dyn Device>) -> Result<(), Failure> {
+fn write_png(
+    path: &Path,
+    picture: &Picture,
+    job: &Job,
+    is_complete: bool,
+    device: Option<&dyn Device>,
+) -> Result<(), Failure> {
     let text = job_text(job, path)?;
-    let texts: Vec<_> = [(JOB_ATTRIBUTE, text.as_str())].into_iter().chain(remarks(picture)).collect();
+    let texts: Vec<_> = [(JOB_ATTRIBUTE, text.as_str())].into_iter().chain(remarks(is_complete)).collect();
     let display = &job.settings.display;
     let shown = picture.displayed(display, device);
     image::write_png_with_text(path, &shown, display.transfer, &texts).map_err(Failure::output)

@@ -5,8 +5,8 @@ use crate::exit::Failure;
 use crate::memory;
 use crate::plan::Plan;
 use lightcuts::device::DeviceKind;
-use lightcuts::rendering::{Model, StationDevice};
-use lightcuts::{Settings, Stats};
+use lightcuts::rendering::{End, Model, StationDevice};
+use lightcuts::{Settings, Stage, Stats};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
@@ -60,7 +60,8 @@ pub(crate) fn summary(statistics: &Statistics<'_>, written: &[&Path]) -> String 
         let _ = writeln!(text, "{name:<12} {value}");
     };
     line("scene", &format!("{} ({})", statistics.scene, statistics.scene_file));
-    line("picture", &format!("{} x {}, samples {}", size.width, size.height, settings.sampling.samples));
+    let samples = samples(stats, settings.run.model);
+    line("picture", &format!("{} x {}, samples {samples}", size.width, size.height));
     if settings.run.model == Model::Thesis {
         line("VPLs", &stats.vpl_count.to_string());
         line("light ratio", &format!("{:.4} %", stats.light_ratio_percent));
@@ -83,6 +84,44 @@ pub(crate) fn summary(statistics: &Statistics<'_>, written: &[&Path]) -> String 
         line("wrote", &path.display().to_string());
     }
     text
+}
+
+/// How many samples pixels have, why there are no more of them, and how far they may be from the truth.
+fn samples(stats: &Stats, model: Model) -> String {
+    let mut parts = vec![number(stats.samples_per_pixel)];
+    parts.extend(stats.samples_wanted.filter(|_| stats.end != End::Samples).map(|wanted| format!(" of {wanted}")));
+    parts.extend(match stats.end {
+        End::Samples => None,
+        End::Time => Some(", time was up".to_owned()),
+        End::Noise => Some(", noise low enough".to_owned()),
+        End::Interrupted => Some(", interrupted".to_owned()),
+    });
+    if stats.end == End::Interrupted && model == Model::Thesis {
+        let mut stages = stats.passes.iter().rev().map(|pass| pass.name.as_ref());
+        let last = stages.find(|&name| name != Stage::Develop.name());
+        parts.extend(last.map(|name| format!(" in the stage {}", name.replace('_', " "))));
+    }
+    parts.extend(stats.relative_error.map(|error| format!("; relative error {}", three_digits(error))));
+    if stats.unsampled_pixels > 0 {
+        parts.push(format!("; {} pixels without one show their neighbours'", stats.unsampled_pixels));
+    }
+    parts.concat()
+}
+
+/// A mean number of samples: whole, or to about a tenth.
+fn number(mean: f64) -> String {
+    match mean {
+        _ if mean.fract() == 0.0 => format!("{mean:.0}"),
+        0.1..100.0 => format!("{mean:.1}"),
+        ..0.1 => format!("{mean:.4}"),
+        _ => format!("{mean:.0}"),
+    }
+}
+
+/// A small number to about three digits.
+fn three_digits(value: f64) -> String {
+    let digits = (2.0 - value.max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{value:.digits$}")
 }
 
 /// What rendered, unless the CPU did all of it: one device, or each with its stations.
@@ -120,6 +159,7 @@ fn faults(count: u32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lightcuts::rendering::PassTime;
 
     fn station(station: &str, kind: &str, name: &str) -> StationDevice {
         StationDevice { station: station.to_owned(), kind: kind.to_owned(), name: name.to_owned() }
@@ -136,6 +176,24 @@ mod tests {
             devices(&[cpu("place"), cpu("tree"), gpu("gather")]).unwrap(),
             "place, tree on Processor (CPU); gather on llvmpipe (software GPU)"
         );
+    }
+
+    #[test]
+    fn samples_are_told_with_their_end() {
+        let told = |stats: Stats| samples(&stats, Model::Physical);
+        let whole = Stats { samples_per_pixel: 64.0, samples_wanted: Some(64), ..Stats::default() };
+        assert_eq!(told(Stats { relative_error: Some(0.021_34), ..whole.clone() }), "64; relative error 0.0213");
+        let timed = Stats { end: End::Time, samples_per_pixel: 7.81, ..whole };
+        assert_eq!(told(Stats { samples_wanted: Some(100_000), ..timed.clone() }), "7.8 of 100000, time was up");
+        assert_eq!(told(Stats { samples_wanted: None, ..timed.clone() }), "7.8, time was up");
+        let short = Stats { samples_per_pixel: 0.01563, unsampled_pixels: 12, ..timed.clone() };
+        assert_eq!(told(short), "0.0156 of 64, time was up; 12 pixels without one show their neighbours'");
+        let low = Stats { end: End::Noise, samples_per_pixel: 1234.56, relative_error: Some(0.5), ..timed };
+        assert_eq!(told(low), "1235 of 64, noise low enough; relative error 0.500");
+        let passes = ["first_pass", "develop"].map(|name| PassTime { name: name.into(), wall_s: 0.0, cpu_s: 0.0 });
+        let cut = Stats { end: End::Interrupted, samples_per_pixel: 0.25, samples_wanted: Some(4), ..Stats::default() };
+        let cut = Stats { passes: passes.to_vec(), ..cut };
+        assert_eq!(samples(&cut, Model::Thesis), "0.2 of 4, interrupted in the stage first pass");
     }
 
     #[test]

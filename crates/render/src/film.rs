@@ -76,7 +76,8 @@ impl Film {
         let (width, height) = ((tile.width + 2 * border) as usize, (tile.height + 2 * border) as usize);
         let border = i64::from(border);
         let (left, bottom) = (i64::from(tile.i) - border, i64::from(tile.j) - border);
-        let sums = vec![Vec4::ZERO; width * height];
+        // Zeros of the system: memory of a part that gets no sample is never touched.
+        let sums = bytemuck::zeroed_vec(width * height);
         Self { filter: filter.pixel_filter(), border, left, bottom, width, height, sums }
     }
 

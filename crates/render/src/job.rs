@@ -14,7 +14,7 @@ use crate::rendering::{Canvas, Rendering};
 use crate::sampler::Sampler;
 use crate::settings::{Bloom, Settings};
 use crate::stations::{Station, Stations};
-use crate::stats::{Stats, timed};
+use crate::stats::{End, Stats, timed};
 use crate::{Options, Vpl};
 use lightcuts_image::Image;
 use lightcuts_kernel::Rules;
@@ -79,6 +79,9 @@ impl<'a> Job<'a> {
             Some(draws) => job.first_pass_original(draws),
             None => job.first_pass(),
         });
+        let image = self.settings.image;
+        let pixels = f64::from(image.width) * f64::from(image.height);
+        self.stats.samples_per_pixel = self.stats.rays.primary as f64 / pixels;
         let vpls = self.given_vpls.map_or(placed, <[Vpl]>::to_vec);
         self.stats.vpl_count = vpls.len() as u64;
         let photons = self.shoot_photons();
@@ -101,6 +104,8 @@ impl<'a> Job<'a> {
         stats.total_cpu_s = passes.iter().map(|p| p.cpu_s).sum();
         stats.passes = passes;
         stats.complete = !cancelled;
+        stats.end = if cancelled { End::Interrupted } else { End::Samples };
+        stats.samples_wanted = Some(u64::from(settings.sampling.samples));
         (stats.devices, stats.device_faults) = (crew.record(), crew.faults);
         let tree = &mut stats.tree;
         tree.visits_per_hit = (tree.nodes + tree.lights) as f64 / tree.shaded_hits.max(1) as f64;

@@ -43,7 +43,7 @@ pub use settings::{
     overlay, value_at, value_in,
 };
 pub use stations::{PerStation, Station, Stations};
-pub use stats::{PartTime, PassTime, Rays, StationDevice, Stats, TreeVisits, VplWork};
+pub use stats::{End, PartTime, PassTime, Rays, StationDevice, Stats, TreeVisits, VplWork};
 pub use vpl_csv::{VplCsvError, vpls_from_csv, vpls_to_csv};
 
 use cpu::CpuDevice;

@@ -36,17 +36,22 @@ pub struct Rendering {
 }
 
 impl Rendering {
-    /// Beauty and AOVs, ready for an EXR file.
+    /// Beauty and AOVs, ready for an EXR file; copies of them. [`into_layers`](Self::into_layers) copies nothing.
     pub fn layers(&self) -> Layers {
-        let mut layers = Layers::new(self.beauty.clone());
+        self.clone().into_layers()
+    }
+
+    /// Beauty and AOVs, ready for an EXR file.
+    pub fn into_layers(self) -> Layers {
+        let mut layers = Layers::new(self.beauty);
         let aovs = [
-            ("first_pass", LayerData::Color(self.first_pass.clone())),
-            ("second_pass", LayerData::Color(self.second_pass.clone())),
-            ("albedo", LayerData::Color(self.albedo.clone())),
-            ("normal", LayerData::Vector(self.normal.clone())),
-            ("depth", LayerData::Depth(self.depth.clone())),
-            ("object_id", LayerData::Id(self.object_id.clone())),
-            ("lights_selected", LayerData::Scalar(self.lights_selected.clone())),
+            ("first_pass", LayerData::Color(self.first_pass)),
+            ("second_pass", LayerData::Color(self.second_pass)),
+            ("albedo", LayerData::Color(self.albedo)),
+            ("normal", LayerData::Vector(self.normal)),
+            ("depth", LayerData::Depth(self.depth)),
+            ("object_id", LayerData::Id(self.object_id)),
+            ("lights_selected", LayerData::Scalar(self.lights_selected)),
         ];
         for (name, data) in aovs {
             layers.push(name, data).expect("all planes have the picture's size and each its own name");

@@ -28,8 +28,25 @@ pub struct Stats {
     pub photons_stored: u64,
     /// Pixels that got adaptive samples in either pass.
     pub adaptive_pixels: u64,
-    /// Whether the render ran to its end.
+    /// Whether the render ran to its end: false if somebody broke it off.
     pub complete: bool,
+    /// Why no more samples were taken.
+    #[serde(default)]
+    pub end: End,
+    /// Samples of a pixel, on average; of the thesis' model those of the first pass. What a pixel shows of a neighbour's does not
+    /// count.
+    #[serde(default)]
+    pub samples_per_pixel: f64,
+    /// Samples of every pixel that were asked for; none where only time, noise or a person ends the render.
+    #[serde(default)]
+    pub samples_wanted: Option<u64>,
+    /// Pixels of the physical model that show the nearest one that has a sample, because the first pass was broken off.
+    #[serde(default)]
+    pub unsampled_pixels: u64,
+    /// Of the physical model: relative standard error of the pixels, as a root mean square, estimated from how much their samples
+    /// vary; of large pictures from a part of the rows. None where no pixel has two samples.
+    #[serde(default)]
+    pub relative_error: Option<f64>,
     /// What ran each station, in the order place, photons, tree, gather, develop; only those that ran.
     #[serde(default)]
     pub devices: Vec<StationDevice>,
@@ -39,6 +56,21 @@ pub struct Stats {
     /// What the physical model's VPLs cost before they were gathered.
     #[serde(default)]
     pub vpl_work: VplWork,
+}
+
+/// What ends a render.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum End {
+    /// All samples are taken.
+    #[default]
+    Samples,
+    /// The limit of time.
+    Time,
+    /// The noise is as low as it was to be.
+    Noise,
+    /// A person, or a program, that would not wait.
+    Interrupted,
 }
 
 /// Parts of the physical model's passes, all passes together.
@@ -161,10 +193,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn statistics_from_before_there_were_devices_are_read() {
+    fn statistics_of_older_versions_are_read() {
         let stats = Stats { vpl_count: 290, ..Stats::default() };
         let mut old = toml::Table::try_from(&stats).unwrap();
-        assert!(old.remove("devices").is_some() && old.remove("device_faults").is_some());
+        for key in ["devices", "device_faults", "end", "samples_per_pixel", "unsampled_pixels"] {
+            assert!(old.remove(key).is_some(), "{key}");
+        }
         assert_eq!(old.try_into::<Stats>().unwrap(), stats);
     }
 }

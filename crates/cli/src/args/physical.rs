@@ -19,11 +19,14 @@ pub(crate) struct PhysicalFlags {
     integrator: Option<String>,
     /// Stop after this time, such as 10s, 2m or 1.5h; 0 for no limit [default: 0]
     ///
-    /// Samples are taken until then, but no more than --samples. The first pass is always finished.
+    /// Rendering is over then, however large the picture: pixels that got no sample in time show the nearest one that has.
+    /// Reading the scene and writing files come on top. The number of samples is not limited unless --samples is given.
     #[arg(id = "physical.time-limit", long = "time-limit", value_name = "TIME")]
     time_limit: Option<Seconds>,
     /// Stop when the estimated relative RMS error of the pixels falls below this, such as 0.02; 0 for never [default:
     /// 0]
+    ///
+    /// It is checked every four passes. The number of samples is not limited unless --samples is given.
     #[arg(id = "physical.noise", long = "noise", value_name = "X")]
     noise: Option<f32>,
     /// Approximate number of VPLs per pass [default: 2000]

@@ -26,8 +26,8 @@ pub(crate) struct RunFlags {
     reproduce: Option<bool>,
     /// Seed of the random numbers [default: 1]
     ///
-    /// The same job and seed give the same picture, bit for bit, on any number of threads; only `auto` and --time-limit
-    /// depend on measured times. Change it to see how much of a picture is noise.
+    /// The same job and seed give the same picture, bit for bit, on any number of threads, except where measured times
+    /// decide: with --time-limit, --integrator auto or --gather auto. Change it to see how much of a picture is noise.
     #[arg(id = "run.seed", long = "seed", value_name = "N")]
     seed: Option<u32>,
     /// Maximum ray depth: mirrored and refracted rays, the camera ray included, 1 to 12 [default: 4]
@@ -89,7 +89,7 @@ pub(crate) struct SamplingFlags {
     ///
     /// The time is proportional to it. In the thesis' model 4 to 16 make smooth edges, and the number of VPLs stays the
     /// same: their probability is divided among the camera rays. In the physical model more samples mean less noise:
-    /// four times as many halve it.
+    /// four times as many halve it. There 0 is no limit, with --time-limit or --noise, and the default with them.
     #[arg(id = "sampling.samples", long = "samples", short = 's', value_name = "N")]
     samples: Option<u32>,
     /// Samples of pixels that differ from a neighbour; used if higher than --samples [default: 0]

@@ -87,7 +87,7 @@ impl Experiment {
 
     /// Fails if a picture of the plan does not fit into memory: no long experiment is to end on its last job.
     fn check_memory(&self) -> Result<(), Failure> {
-        self.plan.jobs.iter().try_for_each(|job| memory::require_for(job.settings.image))
+        self.plan.jobs.iter().try_for_each(|job| memory::require_for(&job.settings, &[]))
     }
 
     /// Version and job, so that `lightcuts render` renders a picture of the experiment again.

@@ -95,7 +95,7 @@ impl Monitor for Progress {
     }
 
     fn note(&self, text: &str) {
-        self.with(|state| tell_note(self.style, &state.bar, text));
+        tell_note(self.style, text);
     }
 
     fn cancelled(&self) -> bool {
@@ -153,6 +153,7 @@ impl State {
             if let Ok(style) = BarStyle::with_template("[{bar:20}] {pos}/{len}{prefix}  {wide_msg}") {
                 self.bar.set_style(style.progress_chars("=> "));
             }
+            console::share_with(&self.bar);
         }
         self.show_bar();
     }

@@ -5,7 +5,7 @@ use crate::args::{RenderArgs, SettingFlags};
 use crate::exit::Failure;
 use lightcuts::Settings;
 use lightcuts::rendering::{Model, overlay, value_in};
-use toml::Table;
+use toml::{Table, Value};
 
 /// The model of light asked for: by the flags, else by the last job file that names one, else that of the scene.
 pub(crate) fn model(scene: Model, files: &[JobFile], flags: &SettingFlags) -> Model {
@@ -24,6 +24,10 @@ pub(crate) fn resolve(recommended: &Settings, files: &[JobFile], flags: &Setting
     }
     let given = flags.table();
     overlay(&mut table, &given);
+    let lends = |file: &JobFile| file.span_of("sampling.samples").is_some();
+    if value_in(&given, "sampling.samples").is_none() && !files.iter().any(lends) {
+        lift_samples(&mut table);
+    }
     let settings: Settings = table.try_into().map_err(|error: toml::de::Error| unexpected(&error.message()))?;
     settings.validate().map_err(|error| {
         let culprit = files.iter().rev().find_map(|file| Some((file, file.span_of(&error.name)?)));
@@ -38,6 +42,15 @@ pub(crate) fn resolve(recommended: &Settings, files: &[JobFile], flags: &Setting
         }
     })?;
     Ok(settings)
+}
+
+/// Where time or noise ends a render of the physical model, there is no number of samples that would end it earlier
+/// unless one is given.
+fn lift_samples(table: &mut Table) {
+    let has_other_limit = table.clone().try_into().is_ok_and(|settings: Settings| settings.has_other_limit());
+    if let Some(sampling) = table.get_mut("sampling").and_then(Value::as_table_mut).filter(|_| has_other_limit) {
+        sampling.insert("samples".to_owned(), Value::Integer(0));
+    }
 }
 
 /// Fails if the command line sets what has no meaning in the model of light of the render; `of_scene` is that of its

@@ -2,8 +2,9 @@
 
 #![cfg(unix)]
 
+use crate::physical::SCENE;
 use crate::support::Folder;
-use lightcuts::image::read_exr;
+use lightcuts::image::{LayerData, read_exr};
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStderr, Command, Stdio};
 
@@ -40,6 +41,30 @@ fn an_interrupted_render_writes_what_there_is() {
         assert_eq!((layers.width(), layers.height()), (512, 512));
         assert_eq!(layers.attribute("lightcuts:complete"), Some("false"));
         assert!(folder.has("a.png") && folder.text("s.json").contains("\"complete\": false"));
+    }
+}
+
+/// Broken off in its first pass, a picture of the physical model has no holes.
+#[test]
+fn an_interrupted_first_pass_leaves_no_holes() {
+    for integrator in ["path", "lightcuts", "auto"] {
+        let folder = Folder::new();
+        folder.write("ball.toml", SCENE);
+        let arguments = format!(
+            "render ball.toml --integrator {integrator} --size 1200x900 --samples 1000 --progress json -o a.exr --stats s.json"
+        );
+        let mut child = folder.command(&arguments).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+        let mut stderr = BufReader::new(child.stderr.take().unwrap());
+        let mut said = String::new();
+        stderr.read_line(&mut said).unwrap();
+        signal(&child, "INT");
+        stderr.read_to_string(&mut said).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{said}");
+        let stats: serde_json::Value = serde_json::from_str(&folder.text("s.json")).unwrap();
+        assert!(stats["end"] == "interrupted" && stats["complete"] == false, "{stats}");
+        let layers = read_exr(folder.at("a.exr")).unwrap();
+        let Some(LayerData::Id(ids)) = layers.get("object_id") else { panic!("an EXR has ids") };
+        assert!((540..900).all(|y| ids.row(y)[480..720].iter().all(|&id| id > 0)), "{integrator}");
     }
 }
 

@@ -1,10 +1,10 @@
 //! Scenes of the physical model, and layers in false colours.
 
 use crate::support::{Folder, stderr, stdout};
-use lightcuts::image::{read_exr, read_png};
+use lightcuts::image::{LayerData, read_exr, read_png};
 
 /// A ball on a floor under a lamp.
-const SCENE: &str = "\
+pub(crate) const SCENE: &str = "\
 format = 'lightcuts-scene'
 version = 1
 [camera]
@@ -76,6 +76,63 @@ fn a_time_limit_ends_a_render_that_is_complete_then() {
     let said = stderr(&folder.run("render ball.toml --time-limit soon").code(2));
     assert!(said.contains("expected a time such as 10s"), "{said}");
     folder.run("render ball.toml --noise 10 --samples 100000 --size 16x16 --progress none").success();
+}
+
+/// The number of samples that a summary and the statistics tell, what ended the render, and what was asked for.
+fn samples_of(folder: &Folder, options: &str) -> (String, serde_json::Value) {
+    let said = stdout(
+        &folder.run(&format!("render ball.toml --size 16x16 --progress none --stats s.json {options}")).success(),
+    );
+    let line = said.lines().find(|line| line.starts_with("picture")).unwrap_or_else(|| panic!("{said}")).to_owned();
+    (line, serde_json::from_str(&folder.text("s.json")).unwrap())
+}
+
+#[test]
+fn a_render_says_how_many_samples_it_has_and_why_not_more() {
+    let folder = folder();
+    let (line, stats) = samples_of(&folder, "--samples 3");
+    assert!(line.contains(", samples 3; relative error "), "{line}");
+    assert!(stats["end"] == "samples" && stats["samples_per_pixel"] == 3.0 && stats["samples_wanted"] == 3, "{stats}");
+    let (line, stats) = samples_of(&folder, "--samples 1");
+    assert!(line.ends_with(", samples 1") && stats["relative_error"].is_null(), "{line}");
+    let (line, stats) = samples_of(&folder, "--samples 1000000 --time-limit 0.2s");
+    assert!(line.contains(" of 1000000, time was up; relative error "), "{line}");
+    assert!(stats["end"] == "time" && stats["complete"] == true && stats["unsampled_pixels"] == 0, "{stats}");
+}
+
+#[test]
+fn without_a_number_of_samples_only_time_or_noise_ends_a_render() {
+    let folder = folder();
+    let more_than_64 = |stats: &serde_json::Value| stats["samples_per_pixel"].as_f64().unwrap() > 64.0;
+    let (line, stats) = samples_of(&folder, "--integrator path --time-limit 1s");
+    assert!(line.contains(", time was up;") && !line.contains(" of "), "{line}");
+    assert!(more_than_64(&stats) && stats["samples_wanted"].is_null(), "{stats}");
+    let (line, stats) = samples_of(&folder, "--integrator path --noise 0.03");
+    assert!(line.contains(", noise low enough;"), "{line}");
+    assert!(more_than_64(&stats) && stats["relative_error"].as_f64().unwrap() <= 0.03, "{stats}");
+    // A job file may bring the limit, or the number.
+    folder.write("limit.toml", "scene = 'ball.toml'\n[physical]\ntime-limit = 0.1\n");
+    folder.write("both.toml", "scene = 'ball.toml'\n[physical]\ntime-limit = 100\n[sampling]\nsamples = 2\n");
+    folder.run("render limit.toml --size 8x8 --progress none --write-job j.toml").success();
+    assert!(folder.text("j.toml").contains("samples = 0\n"));
+    let said = stdout(&folder.run("render both.toml --size 8x8 --progress none").success());
+    assert!(said.contains(", samples 2"), "{said}");
+    let said = stderr(&folder.run("render ball.toml --samples 0").code(2));
+    assert!(said.contains("0 for no limit where there is one of time or noise"), "{said}");
+}
+
+/// A picture that is too large for its time is whole: every pixel of the floor is there.
+#[test]
+fn a_picture_without_time_is_whole() {
+    let folder = folder();
+    let options = "--size 1000x800 --time-limit 0.02s --progress none -o a.exr";
+    let said = stdout(&folder.run(&format!("render ball.toml {options}")).success());
+    assert!(said.contains("time was up") && said.contains("show their neighbours'"), "{said}");
+    let layers = read_exr(folder.at("a.exr")).unwrap();
+    assert_eq!(layers.attribute("lightcuts:complete"), None);
+    let Some(LayerData::Id(ids)) = layers.get("object_id") else { panic!("an EXR has ids") };
+    // Rows near the lower edge see nothing but the floor.
+    assert!((500..800).all(|y| ids.row(y)[400..600].iter().all(|&id| id > 0)));
 }
 
 #[test]

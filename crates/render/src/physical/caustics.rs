@@ -56,11 +56,18 @@ fn radius_of(pass: u32) -> f32 {
 }
 
 impl CausticMap {
-    /// Shoots a fixed number of photons for a pass.
-    pub(crate) fn shoot(scene: &Scene<'_>, origins: &Origins, paths: u32, stream: u32, pass: u32) -> Self {
+    /// Shoots a fixed number of photons for a pass. Once `is_over`, they are of no use.
+    pub(crate) fn shoot(
+        scene: &Scene<'_>,
+        origins: &Origins,
+        paths: u32,
+        stream: u32,
+        pass: u32,
+        is_over: &(dyn Fn() -> bool + Sync),
+    ) -> Self {
         let (lower, upper) = scene.world.bounds;
         let radius = radius_of(pass) * (upper - lower).length();
-        let left = trace_light(scene, origins, paths, stream, is_focused, photon);
+        let left = trace_light(scene, origins, paths, stream, is_focused, photon, is_over);
         Self { rays: left.rays, ..Self::sort(&left.items, radius) }
     }
 

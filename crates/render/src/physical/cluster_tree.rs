@@ -28,6 +28,7 @@ struct Builder<'a> {
     /// Factor on normals, in scene units.
     normal_scale: f32,
     stream: u32,
+    is_over: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// What a range of lights is told by.
@@ -39,15 +40,15 @@ struct Summary {
 }
 
 impl ClusterTree {
-    /// Builds the tree; `stream` decides which lights stand for their clusters.
-    pub(crate) fn build(lights: &[VirtualLight], stream: u32) -> Self {
+    /// Builds the tree; `stream` decides which lights stand for their clusters. Once `is_over`, the tree is of no use.
+    pub(crate) fn build(lights: &[VirtualLight], stream: u32, is_over: &(dyn Fn() -> bool + Sync)) -> Self {
         let (lower, upper) = lights.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lower, upper), light| {
             (lower.min(light.position), upper.max(light.position))
         });
         let normal_scale = if lights.is_empty() { 0.0 } else { (upper - lower).length() * NORMAL_WEIGHT };
         let mut order: Vec<u32> = (0..lights.len() as u32).collect();
         let mut nodes = vec![ClusterNode::zeroed(); lights.len().saturating_sub(1)];
-        let builder = Builder { lights, normal_scale, stream };
+        let builder = Builder { lights, normal_scale, stream, is_over };
         if !lights.is_empty() {
             builder.build(&mut nodes, &mut order, 0, 0);
         }
@@ -69,6 +70,9 @@ impl Builder<'_> {
     fn build(&self, nodes: &mut [ClusterNode], order: &mut [u32], first_node: u32, first_light: u32) -> Summary {
         if let [only] = *order {
             return Summary { power: light_power(self.light(only).intensity), representative: first_light };
+        }
+        if order.len() > PARALLEL_LIGHTS && (self.is_over)() {
+            return Summary { power: 0.0, representative: first_light };
         }
         let middle = self.split(order);
         let mut node = self.bounds(order);
@@ -193,7 +197,7 @@ pub(crate) mod tests {
             for k in 0..lights.len() / 3 {
                 lights[k] = lights[0];
             }
-            let tree = ClusterTree::build(&lights, 5);
+            let tree = ClusterTree::build(&lights, 5, &|| false);
             assert_eq!(tree.nodes.len(), lights.len().saturating_sub(1));
             let mut seen = vec![0; lights.len()];
             if let Some(root) = tree.root() {
@@ -208,7 +212,7 @@ pub(crate) mod tests {
         let mut lights = scattered(2);
         lights[0].intensity = Vec3::splat(3.0);
         lights[1].intensity = Vec3::splat(1.0);
-        let trees = (0..4000).map(|stream| ClusterTree::build(&lights, stream));
+        let trees = (0..4000).map(|stream| ClusterTree::build(&lights, stream, &|| false));
         let strong = trees.filter(|t| t.lights[t.nodes[0].representative as usize].intensity.x > 2.0).count();
         assert!((2880..3120).contains(&strong), "{strong}");
     }

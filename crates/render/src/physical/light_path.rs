@@ -41,7 +41,8 @@ pub(crate) struct Arrival<'a> {
 }
 
 /// Traces a fixed number of light paths and collects what `leave` makes of each arrival. Their number, never that of what they
-/// leave, is what power is divided by. Paths go on from a place by a lobe only where `follows` says so.
+/// leave, is what power is divided by. Paths go on from a place by a lobe only where `follows` says so. Once `is_over`, what is
+/// left is of no use.
 pub(crate) fn trace_light<T: Send>(
     scene: &Scene<'_>,
     origins: &Origins,
@@ -49,12 +50,16 @@ pub(crate) fn trace_light<T: Send>(
     stream: u32,
     follows: impl Fn(&Interaction, u32) -> bool + Sync,
     leave: impl Fn(&Arrival<'_>) -> Option<T> + Sync,
+    is_over: &(dyn Fn() -> bool + Sync),
 ) -> Left<T> {
     let chunks = paths.div_ceil(CHUNK);
     let parts: Vec<Left<T>> = (0..chunks)
         .into_par_iter()
         .map(|chunk| {
             let mut left = Left::default();
+            if is_over() {
+                return left;
+            }
             for path in chunk * CHUNK..paths.min((chunk + 1) * CHUNK) {
                 let mut randoms = Randoms::new(0, path, stream);
                 follow(scene, origins, &mut randoms, 1.0 / paths as f32, &follows, &leave, &mut left);

@@ -1,22 +1,19 @@
-//! What a render has so far: sums for each technique, and the picture that they make together.
+//! What a render has so far: sums for each technique, and how they count together.
 //!
 //! Where several techniques show the same light, each tile weighs them by the inverse of their variances. If a variance came from
 //! the samples that it weighs, a rare bright sample would lower its own weight, and pictures would be too dark. So variances come
 //! from probes, samples of a few pixels that are not shown.
 
 use super::pass::{Extent, Moments, PROBES_OF_A_GROUP, PixelSums, SampledTile, Task, probed};
-use super::rendering::PhysicalRendering;
 use crate::film::{Film, Tile};
-use crate::stats::Stats;
-use glam::{DVec3, Vec3};
-use lightcuts_image::{Image, Plane};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Edge of a tile in pixels.
 pub(crate) const TILE_SIZE: u32 = 16;
 
 /// Most techniques of a render.
-const MOST_TECHNIQUES: usize = 4;
+pub(super) const MOST_TECHNIQUES: usize = 4;
 
 /// Degrees of freedom that the whole picture has beside a tile's own in the estimate of a variance.
 const PICTURE_FREEDOM: f64 = 256.0;
@@ -32,15 +29,40 @@ const LEAST_WEIGHT: f64 = 0.1;
 const LEAST_VARIANCE: f64 = 1e-9;
 
 /// Sums of one technique.
-struct Canvas {
-    all: Film,
-    indirect: Film,
+pub(super) struct Canvas {
+    pub(super) all: Film,
+    pub(super) indirect: Film,
     /// Bottom row first.
-    moments: Vec<Moments>,
+    pub(super) moments: Vec<Moments>,
     /// Of each tile: samples of each of its pixels.
-    shown: Vec<u32>,
-    /// Of each tile: what probes found at pixels, one group of them after the other.
-    probes: Vec<Vec<(usize, Moments)>>,
+    pub(super) shown: Vec<u32>,
+    /// Of each tile: what probes found.
+    probes: Vec<Probes>,
+}
+
+/// What probes found at the pixels of a tile, one group of them after the other.
+#[derive(Default, Clone)]
+struct Probes {
+    /// Number of the last group, and its first entry.
+    last: Option<(u32, usize)>,
+    pixels: Vec<(usize, Moments)>,
+}
+
+impl Probes {
+    /// Adds a probe of a group, which has these pixels. Groups need not be complete: a pass may have been broken off.
+    fn add(&mut self, group: u32, probed: impl Iterator<Item = (usize, Moments)>) {
+        let first = match self.last {
+            Some((last, first)) if last == group => first,
+            _ => self.pixels.len(),
+        };
+        self.last = Some((group, first));
+        for (k, (pixel, moments)) in probed.enumerate() {
+            if first + k == self.pixels.len() {
+                self.pixels.push((pixel, Moments::default()));
+            }
+            self.pixels[first + k].1.add(&moments);
+        }
+    }
 }
 
 /// What probes tell of a technique's variance, relative to the pixels' squares.
@@ -66,17 +88,17 @@ impl Known {
 
 /// Sums of all passes so far.
 pub(crate) struct Mixture {
-    width: usize,
-    height: usize,
-    tiles: Vec<Tile>,
+    pub(super) width: usize,
+    pub(super) height: usize,
+    tiles: Arc<[Tile]>,
     /// Bottom row first.
-    pixels: Vec<PixelSums>,
+    pub(super) pixels: Vec<PixelSums>,
     /// By technique; made when they are needed.
-    canvases: Vec<Option<Canvas>>,
+    pub(super) canvases: Vec<Option<Canvas>>,
     /// Of each technique and tile: variance of a sample, relative to the pixel's square; `None` where nothing is known.
-    variances: Vec<Vec<Option<f64>>>,
+    pub(super) variances: Vec<Vec<Option<f64>>>,
     /// What the light of each pixel is, as a sum of channels. Empty before the first pass.
-    references: Vec<f32>,
+    references: Arc<Vec<f32>>,
 }
 
 impl Mixture {
@@ -86,29 +108,30 @@ impl Mixture {
         Self {
             width: width as usize,
             height: height as usize,
-            pixels: vec![PixelSums::default(); width as usize * height as usize],
+            // Zeros of the system, as everything here that has a value for each pixel: what gets no sample is never touched.
+            pixels: bytemuck::zeroed_vec(width as usize * height as usize),
             canvases: (0..techniques).map(|_| None).collect(),
             variances: vec![vec![None; tiles.len()]; techniques],
-            references: Vec::new(),
-            tiles,
+            references: Arc::default(),
+            tiles: tiles.into(),
         }
     }
 
-    pub(crate) fn tiles(&self) -> &[Tile] {
-        &self.tiles
+    pub(crate) fn tiles(&self) -> Arc<[Tile]> {
+        self.tiles.clone()
     }
 
-    /// What the samples of a technique tell of each pixel so far, bottom row first; `None` before the first one.
-    pub(crate) fn moments(&self, technique: usize) -> Option<&[Moments]> {
-        self.canvases[technique].as_ref().map(|canvas| &canvas.moments[..])
+    /// How many samples of a technique the pixels of a tile show.
+    pub(crate) fn shown(&self, technique: usize, tile: usize) -> u32 {
+        self.canvases[technique].as_ref().map_or(0, |canvas| canvas.shown[tile])
     }
 
     /// What the light of each pixel is, as a sum of channels; empty before the first pass.
-    pub(crate) fn references(&self) -> &[f32] {
-        &self.references
+    pub(crate) fn references(&self) -> Arc<Vec<f32>> {
+        self.references.clone()
     }
 
-    /// Adds a tile's samples.
+    /// Adds a tile's samples. A pass need not bring those of all tiles.
     pub(crate) fn add(&mut self, sampled: &SampledTile) {
         let (width, height) = (self.width, self.height);
         let tiles = self.tiles.len();
@@ -116,30 +139,23 @@ impl Mixture {
         let canvas = self.canvases[technique].get_or_insert_with(|| Canvas {
             all: Film::new(width as u32, height as u32),
             indirect: Film::new(width as u32, height as u32),
-            moments: vec![Moments::default(); width * height],
+            moments: bytemuck::zeroed_vec(width * height),
             shown: vec![0; tiles],
-            probes: vec![Vec::new(); tiles],
+            probes: vec![Probes::default(); tiles],
         });
+        let pixel = |(i, j): (u32, u32)| j as usize * width + i as usize;
         let samples = match extent {
             Extent::Whole(samples) => samples,
             Extent::Probe(number) => {
-                let probes = &mut canvas.probes[tile];
-                let pixel = |(i, j): (u32, u32)| j as usize * width + i as usize;
-                let group: Vec<_> = probed(&self.tiles[tile], number).collect();
-                if number.is_multiple_of(PROBES_OF_A_GROUP) {
-                    probes.extend(group.iter().map(|&(_, place)| (pixel(place), Moments::default())));
-                }
-                let first = probes.len() - group.len();
-                for ((place, _), (_, probe)) in group.into_iter().zip(&mut probes[first..]) {
-                    probe.add(&sampled.moments[place]);
-                }
+                let found = probed(&self.tiles[tile], number).map(|(k, place)| (pixel(place), sampled.moments[k]));
+                canvas.probes[tile].add(number / PROBES_OF_A_GROUP, found);
                 return;
             }
         };
         canvas.all.merge(&sampled.all);
         canvas.indirect.merge(&sampled.indirect);
         canvas.shown[tile] += samples;
-        let places = self.tiles[tile].pixels().map(|(i, j)| j as usize * width + i as usize);
+        let places = self.tiles[tile].pixels().map(pixel);
         for ((place, sums), moments) in places.zip(&sampled.pixels).zip(&sampled.moments) {
             self.pixels[place].add(sums);
             canvas.moments[place].add(moments);
@@ -148,7 +164,7 @@ impl Mixture {
 
     /// Takes stock of what the light of each pixel is.
     pub(crate) fn learn_light(&mut self) {
-        self.references = self.smooth_light();
+        self.references = Arc::new(self.smooth_light());
     }
 
     /// Takes stock of how much techniques vary, after probes.
@@ -188,14 +204,14 @@ impl Mixture {
     }
 
     /// Square of the brightness below which errors count no more.
-    fn dark(&self) -> f64 {
+    pub(super) fn dark(&self) -> f64 {
         let sum: f64 = self.references.iter().map(|&light| f64::from(light)).sum();
         let mean = sum / (3.0 * self.references.len().max(1) as f64);
         (mean * DARK).powi(2).max(f64::MIN_POSITIVE)
     }
 
     /// What a pixel's errors are measured by: the square of its brightness.
-    fn scale_sq(&self, pixel: usize, dark: f64) -> f64 {
+    pub(super) fn scale_sq(&self, pixel: usize, dark: f64) -> f64 {
         let sums = &self.pixels[pixel];
         let emitted = sums.emitted / f64::from(sums.samples.max(1));
         let smooth = f64::from(self.references.get(pixel).copied().unwrap_or(0.0));
@@ -207,8 +223,8 @@ impl Mixture {
     /// Variances of a technique in all tiles.
     fn tile_variances(&self, canvas: Option<&Canvas>, dark: f64) -> Vec<Option<f64>> {
         let Some(canvas) = canvas else { return vec![None; self.tiles.len()] };
-        let of_tile = |probes: &Vec<(usize, Moments)>| {
-            probes.iter().fold(Known::default(), |known, &(pixel, moments)| {
+        let of_tile = |probes: &Probes| {
+            probes.pixels.iter().fold(Known::default(), |known, &(pixel, moments)| {
                 let spread = moments.spread() / self.scale_sq(pixel, dark);
                 known.with(&Known { spread, freedom: f64::from(moments.samples.saturating_sub(1)) })
             })
@@ -218,15 +234,14 @@ impl Mixture {
         own.iter().map(|own| own.variance(&all)).collect()
     }
 
-    fn tile_of(&self, i: usize, j: usize) -> usize {
+    pub(super) fn tile_of(&self, i: usize, j: usize) -> usize {
         let size = TILE_SIZE as usize;
         j / size * self.width.div_ceil(size) + i / size
     }
 
     /// Weights of the techniques in a tile. They sum to 1 if it has a sample.
-    fn weights(&self, tile: usize) -> [f64; MOST_TECHNIQUES] {
-        let shown =
-            |technique: usize| self.canvases[technique].as_ref().map_or(0.0, |canvas| f64::from(canvas.shown[tile]));
+    pub(super) fn weights(&self, tile: usize) -> [f64; MOST_TECHNIQUES] {
+        let shown = |technique: usize| f64::from(self.shown(technique, tile));
         let known = |technique| self.variance_in(technique, tile).map_or(0.0, |variance| shown(technique) / variance);
         let techniques = self.canvases.len();
         // Before anything is known, samples count alike.
@@ -239,92 +254,26 @@ impl Mixture {
             if technique < techniques { kept(technique).map_or(0.0, |weight| weight / sum) } else { 0.0 }
         })
     }
+}
 
-    /// Variance of a pixel's brightness.
-    fn variance(&self, i: usize, j: usize, dark: f64) -> f64 {
-        let (pixel, tile) = (j * self.width + i, self.tile_of(i, j));
-        let weights = self.weights(tile);
-        let of = |(part, (technique, weight)): (&Option<Canvas>, (usize, f64))| {
-            let part = part.as_ref().filter(|_| weight > 0.0)?;
-            let moments = part.moments[pixel];
-            let of_sample = match moments.samples {
-                // A single sample says nothing: its tile does.
-                0 | 1 => self.variances[technique][tile].map_or(0.0, |v| v * self.scale_sq(pixel, dark)),
-                n => moments.variance_of_mean() * f64::from(n),
-            };
-            Some(weight * weight * of_sample / f64::from(part.shown[tile].max(1)))
-        };
-        self.canvases.iter().zip(weights.into_iter().enumerate()).filter_map(of).sum()
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn probe(value: f64) -> Moments {
+        Moments { samples: 1, sum: value, sum_sq: value * value }
     }
 
-    /// Root mean square of the pixels' relative standard errors; of dark pixels relative to a hundredth of the mean.
-    pub(crate) fn noise(&self) -> f64 {
-        let count = self.pixels.len() as f64;
-        let brightness = |i, j| f64::from(self.mean(i, j, |canvas| &canvas.all).element_sum()) / 3.0;
-        let places = || (0..self.height).flat_map(|j| (0..self.width).map(move |i| (i, j)));
-        let floor = places().map(|(i, j)| brightness(i, j)).sum::<f64>() / count * 0.01;
-        let dark = self.dark();
-        let relative_sq = |(i, j)| {
-            let least = brightness(i, j).max(floor).powi(2).max(f64::MIN_POSITIVE);
-            self.variance(i, j, dark) / least
-        };
-        (places().map(relative_sq).sum::<f64>() / count).sqrt()
-    }
-
-    /// A pixel's colour on the films of all canvases together.
-    fn mean(&self, i: usize, j: usize, film: impl Fn(&Canvas) -> &Film) -> Vec3 {
-        let weights = self.weights(self.tile_of(i, j));
-        let of = |(canvas, weight): (&Option<Canvas>, f64)| {
-            canvas.as_ref().filter(|_| weight > 0.0).map(|canvas| film(canvas).mean(i, j) * weight as f32)
-        };
-        self.canvases.iter().zip(weights).filter_map(of).sum()
-    }
-
-    /// The picture; `origin` is where the world lies in the scene.
-    pub(crate) fn develop(self, stats: Stats, origin: DVec3) -> PhysicalRendering {
-        let beauty = self.image(|i, j| self.mean(i, j, |canvas| &canvas.all));
-        let indirect = self.image(|i, j| self.mean(i, j, |canvas| &canvas.indirect));
-        let direct =
-            self.image(|i, j| self.mean(i, j, |canvas| &canvas.all) - self.mean(i, j, |canvas| &canvas.indirect));
-        let over = |sum: Vec3, count: u32| if count == 0 { Vec3::ZERO } else { sum / count as f32 };
-        let mean = |sum: f32, count: u32| if count == 0 { 0.0 } else { sum / count as f32 };
-        let dark = self.dark();
-        PhysicalRendering {
-            beauty,
-            direct,
-            indirect,
-            albedo: self.image(|i, j| over(self.at(i, j).albedo, self.at(i, j).samples)),
-            normal: self.image(|i, j| over(self.at(i, j).normal, self.at(i, j).hits)),
-            position: self.image(|i, j| self.position(i, j, origin)),
-            depth: self.plane(|p| if p.hits == 0 { f32::INFINITY } else { p.depth / p.hits as f32 }),
-            object_id: self.plane(|p| p.object),
-            material_id: self.plane(|p| p.material),
-            samples: self.plane(|p| p.samples as f32),
-            variance: Plane::from_fn(self.width, self.height, |x, y| {
-                self.variance(x, self.height - 1 - y, dark) as f32
-            }),
-            cut_size: self.plane(|p| mean(p.cut, p.cuts)),
-            error_bound: self.plane(|p| mean(p.bound, p.cuts)),
-            stats,
+    /// Passes that were broken off leave gaps in the groups of a tile; what is there stays with its own pixels.
+    #[test]
+    fn probes_find_their_group_whatever_is_missing() {
+        let mut probes = Probes::default();
+        // Of the first group the last two, of the second none, of the third its second and fourth.
+        for (group, pixels) in [(0, [3, 4]), (0, [3, 4]), (2, [7, 8]), (2, [7, 8])] {
+            probes.add(group, pixels.into_iter().map(|pixel| (pixel, probe(pixel as f64))));
         }
-    }
-
-    /// Where a pixel's samples hit something, in the scene.
-    fn position(&self, i: usize, j: usize, origin: DVec3) -> Vec3 {
-        let PixelSums { position, hits, .. } = *self.at(i, j);
-        if hits == 0 { Vec3::ZERO } else { (position.as_dvec3() / f64::from(hits) + origin).as_vec3() }
-    }
-
-    fn at(&self, i: usize, j: usize) -> &PixelSums {
-        &self.pixels[j * self.width + i]
-    }
-
-    /// A picture from a function of (i, j), j from the bottom.
-    fn image(&self, color: impl Fn(usize, usize) -> Vec3) -> Image {
-        Image::from_fn(self.width, self.height, |x, y| color(x, self.height - 1 - y).to_array())
-    }
-
-    fn plane<T: Copy>(&self, value: impl Fn(&PixelSums) -> T) -> Plane<T> {
-        Plane::from_fn(self.width, self.height, |x, y| value(self.at(x, self.height - 1 - y)))
+        let found: Vec<_> =
+            probes.pixels.iter().map(|(pixel, moments)| (*pixel, moments.samples, moments.sum)).collect();
+        assert_eq!(found, [(3, 2, 6.0), (4, 2, 8.0), (7, 2, 14.0), (8, 2, 16.0)]);
     }
 }

@@ -3,25 +3,30 @@
 mod bundle;
 mod caustics;
 mod cluster_tree;
+mod develop;
 mod direct;
 mod emission;
 mod gather;
+mod in_order;
 mod job;
 mod light_path;
 mod lightcuts;
 mod mixture;
 mod pass;
 mod path;
+mod placing;
 mod plan;
 mod randoms;
 mod rejection;
 mod rendering;
 mod scene;
+mod sketch;
 mod technique;
 #[cfg(test)]
 mod tests;
 mod ties;
 mod vpls;
+mod watch;
 
 pub use rendering::PhysicalRendering;
 

@@ -5,9 +5,11 @@ use super::lightcuts::Lightcuts;
 use super::path::Radiance;
 use super::randoms::Randoms;
 use super::scene::{Cone, Interaction, Scene};
+use super::sketch::Glimpse;
 use super::technique::Technique;
 use crate::film::{Film, Tile};
 use crate::settings::Filter;
+use bytemuck::Zeroable;
 use cpu_time::ThreadTime;
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{CONDUCTOR, DIELECTRIC, MIRROR, PHONG};
@@ -69,8 +71,8 @@ impl FirstHit {
     }
 }
 
-/// Sums over the samples of a pixel, of what is the same for all techniques.
-#[derive(Debug, Clone, Copy, Default)]
+/// Sums over the samples of a pixel, of what is the same for all techniques. Zeros are a pixel without samples.
+#[derive(Debug, Clone, Copy, Default, Zeroable)]
 pub(crate) struct PixelSums {
     pub(crate) samples: u32,
     /// Samples that hit something.
@@ -95,6 +97,20 @@ pub(crate) struct PixelSums {
 }
 
 impl PixelSums {
+    /// Of a single sample by a technique.
+    fn of(sampled: &Sampled, technique: Technique) -> Self {
+        let Sampled { radiance, first, cut, bound } = *sampled;
+        let emitted = f64::from(light_power(radiance.emitted));
+        let reflected = f64::from(light_power(radiance.all)) - emitted;
+        let cuts = u32::from(technique.uses_vpls());
+        let gathered = f64::from(cuts) * reflected;
+        let mut sums = Self { samples: 1, reflected, emitted, cut, bound, cuts, gathered, ..Self::default() };
+        if let Some(first) = &first {
+            sums.see(first);
+        }
+        sums
+    }
+
     pub(crate) fn add(&mut self, other: &Self) {
         self.samples += other.samples;
         self.hits += other.hits;
@@ -127,7 +143,7 @@ impl PixelSums {
 
 /// Sums over the samples that a pixel got from one technique, of their brightness (r + g + b) / 3; of probes without light that
 /// was not scattered.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Zeroable)]
 pub(crate) struct Moments {
     pub(crate) samples: u32,
     pub(crate) sum: f64,
@@ -203,14 +219,15 @@ pub(crate) struct SamplePass<'a> {
     pub(crate) caustics: Option<CausticMap>,
 }
 
-/// Which random numbers a task gets.
+/// Which random numbers a task gets: those of samples from a number on, in a stream.
 #[derive(Clone, Copy)]
-struct Points<'a> {
-    /// What each pixel has already; none of probes.
-    before: Option<&'a [Moments]>,
-    first: u32,
-    stream: u32,
+pub(crate) struct Points {
+    pub(crate) first: u32,
+    pub(crate) stream: u32,
 }
+
+/// A pixel of a tile: its place there, and its column and row in the picture.
+type Place = (usize, (u32, u32));
 
 /// What a task yields.
 pub(crate) struct SampledTile {
@@ -246,21 +263,16 @@ pub(crate) struct Sampled {
 }
 
 impl SamplePass<'_> {
-    /// Takes the samples of a task with random numbers of a stream; `before` is what each pixel has of it already.
+    /// Takes the samples of a task; `None` if it has to stop before their end.
     pub(crate) fn render(
         &self,
         task: Task,
         tile: &Tile,
         technique: Technique,
-        before: Option<&[Moments]>,
-        stream: u32,
-    ) -> SampledTile {
+        points: Points,
+        is_over: impl Fn() -> bool,
+    ) -> Option<SampledTile> {
         let clock = ThreadClock::start();
-        let points = match task.extent {
-            Extent::Whole(_) => Points { before, first: 0, stream },
-            // Techniques are compared by the same points: what any of them would see counts for all.
-            Extent::Probe(number) => Points { before: None, first: number, stream },
-        };
         let film = Film::around(tile, self.filter);
         let area = (tile.width * tile.height) as usize;
         let mut result = SampledTile {
@@ -276,75 +288,91 @@ impl SamplePass<'_> {
             Extent::Whole(samples) => {
                 for block in blocks(tile) {
                     for _ in 0..samples {
+                        if is_over() {
+                            return None;
+                        }
                         self.sample_pixels(&block, technique, points, &mut result);
                     }
                 }
             }
+            Extent::Probe(_) if is_over() => return None,
             Extent::Probe(number) => {
                 self.sample_pixels(&probed(tile, number).collect::<Vec<_>>(), technique, points, &mut result);
             }
         }
         result.seconds = clock.seconds();
-        result
+        Some(result)
     }
 
-    /// Takes a sample of each of up to eight pixels, which have their places in the tile.
-    fn sample_pixels(
+    /// Takes a sample of each of up to eight pixels of a tile.
+    fn sample_pixels(&self, pixels: &[Place], technique: Technique, points: Points, result: &mut SampledTile) {
+        let (sampled, shifts) = {
+            let SampledTile { moments, counts, .. } = &mut *result;
+            let numbered = pixels.iter().map(|&(k, place)| (place, points.first + moments[k].samples));
+            self.take(numbered, technique, points.stream, counts)
+        };
+        for ((&(k, place), shift), sampled) in pixels.iter().zip(shifts).zip(&sampled) {
+            result.add(k, place, shift, sampled, technique);
+        }
+    }
+
+    /// Takes a sample by path tracing of each of up to eight pixels.
+    pub(crate) fn glimpse(&self, pixels: &[(u32, u32)], stream: u32) -> Vec<Glimpse> {
+        let numbered = pixels.iter().map(|&place| (place, 0));
+        let (sampled, _) = self.take(numbered, Technique::Path, stream, &mut Counts::default());
+        let glimpse = |sampled: &Sampled| Glimpse {
+            sums: PixelSums::of(sampled, Technique::Path),
+            all: sampled.radiance.all,
+            indirect: sampled.radiance.indirect,
+        };
+        sampled.iter().map(glimpse).collect()
+    }
+
+    /// Takes a sample, which has a number, of each of up to eight pixels; returns how far they are from the pixels' centres too.
+    fn take(
         &self,
-        pixels: &[(usize, (u32, u32))],
+        pixels: impl Iterator<Item = ((u32, u32), u32)>,
         technique: Technique,
-        points: Points<'_>,
-        result: &mut SampledTile,
-    ) {
+        stream: u32,
+        counts: &mut Counts,
+    ) -> (Vec<Sampled>, [[f32; 2]; LANES]) {
         let cone = Cone { width: pixel_width(&self.lens), spread: pixel_spread(&self.lens) };
         let mut starts = Vec::with_capacity(LANES);
         let mut shifts = [[0.0; 2]; LANES];
-        for (slot, &(k, (i, j))) in pixels.iter().enumerate() {
+        for (slot, ((i, j), number)) in pixels.enumerate() {
             let pixel = j * self.lens.width + i;
-            let before = points.before.map_or(points.first, |moments| moments[pixel as usize].samples);
-            let mut randoms = Randoms::new(pixel, before + result.moments[k].samples, points.stream);
+            let mut randoms = Randoms::new(pixel, number, stream);
             let [x, y, u, v] = randoms.next();
             let ray = lens_ray(&self.lens, [i as f32 + x, j as f32 + y], [u, v]);
             shifts[slot] = [x - 0.5, y - 0.5];
             starts.push(Start { slot, pixel, ray, cone, hit: None, randoms });
         }
         let hits = self.scene.closest8(&std::array::from_fn(|lane| starts[lane.min(starts.len() - 1)].ray));
-        result.counts.primary += starts.len() as u64;
+        counts.primary += starts.len() as u64;
         let mut pending = Vec::new();
-        let mut sample =
-            |(start, hit)| technique.sample(self, Start { hit, ..start }, &mut pending, &mut result.counts);
+        let mut sample = |(start, hit)| technique.sample(self, Start { hit, ..start }, &mut pending, counts);
         let mut sampled: Vec<Sampled> = starts.into_iter().zip(hits).map(&mut sample).collect();
-        technique.gather(self, &mut pending, &mut sampled, &mut result.counts);
-        for ((&(k, place), shift), sampled) in pixels.iter().zip(shifts).zip(&sampled) {
-            result.add(k, place, shift, sampled, technique);
-        }
+        technique.gather(self, &mut pending, &mut sampled, counts);
+        (sampled, shifts)
     }
 }
 
 impl SampledTile {
     /// Adds a sample of a pixel, which has its place.
     fn add(&mut self, k: usize, (i, j): (u32, u32), shift: [f32; 2], sampled: &Sampled, technique: Technique) {
-        let Sampled { radiance, first, cut, bound } = *sampled;
-        self.all.add(i, j, shift, radiance.all);
-        self.indirect.add(i, j, shift, radiance.indirect);
-        let emitted = f64::from(light_power(radiance.emitted));
-        let reflected = f64::from(light_power(radiance.all)) - emitted;
+        self.all.add(i, j, shift, sampled.radiance.all);
+        self.indirect.add(i, j, shift, sampled.radiance.indirect);
+        let sums = PixelSums::of(sampled, technique);
         // Lights in the picture are the same to all techniques, and pixels on their edges vary more than all others.
         let is_probe = self.task.extent.samples() == 0;
-        let brightness = if is_probe { reflected } else { reflected + emitted } / 3.0;
+        let brightness = if is_probe { sums.reflected } else { sums.reflected + sums.emitted } / 3.0;
         self.moments[k].add(&Moments { samples: 1, sum: brightness, sum_sq: brightness * brightness });
-        let cuts = u32::from(technique.uses_vpls());
-        let gathered = f64::from(cuts) * reflected;
-        let mut sums = PixelSums { samples: 1, reflected, emitted, cut, bound, cuts, gathered, ..PixelSums::default() };
-        if let Some(first) = &first {
-            sums.see(first);
-        }
         self.pixels[k].add(&sums);
     }
 }
 
 /// A tile's pixels in blocks of up to eight neighbours, each with its place in the tile.
-fn blocks(tile: &Tile) -> impl Iterator<Item = Vec<(usize, (u32, u32))>> {
+fn blocks(tile: &Tile) -> impl Iterator<Item = Vec<Place>> {
     const SIZE: [u32; 2] = [4, 2];
     let Tile { i, j, width, height } = *tile;
     let corners = (0..height)
@@ -358,7 +386,7 @@ fn blocks(tile: &Tile) -> impl Iterator<Item = Vec<(usize, (u32, u32))>> {
 }
 
 /// The pixels of a probe, each with its place in the tile.
-pub(crate) fn probed(tile: &Tile, number: u32) -> impl Iterator<Item = (usize, (u32, u32))> {
+pub(crate) fn probed(tile: &Tile, number: u32) -> impl Iterator<Item = Place> {
     let Tile { i, j, width, height } = *tile;
     (0..PROBED_PARTS).flat_map(move |part| {
         let [u, v, ..] = random4(part, number / PROBES_OF_A_GROUP, i, j);

@@ -4,6 +4,9 @@ use crate::stats::Stats;
 use lightcuts_image::{Image, LayerData, Layers, Plane};
 
 /// A picture of the physical model with everything that was learnt on the way. All planes have one size, row 0 at the top.
+///
+/// A pixel that a broken-off first pass left without samples has the nearest sample of a coarse one, in all planes; `samples` is 0
+/// there.
 #[derive(Debug, Clone)]
 pub struct PhysicalRendering {
     /// Radiance, linear.
@@ -37,22 +40,27 @@ pub struct PhysicalRendering {
 }
 
 impl PhysicalRendering {
-    /// Beauty and AOVs, ready for an EXR file.
+    /// Beauty and AOVs, ready for an EXR file; copies of them. [`into_layers`](Self::into_layers) copies nothing.
     pub fn layers(&self) -> Layers {
-        let mut layers = Layers::new(self.beauty.clone());
+        self.clone().into_layers()
+    }
+
+    /// Beauty and AOVs, ready for an EXR file.
+    pub fn into_layers(self) -> Layers {
+        let mut layers = Layers::new(self.beauty);
         let aovs = [
-            ("direct", LayerData::Color(self.direct.clone())),
-            ("indirect", LayerData::Color(self.indirect.clone())),
-            ("albedo", LayerData::Color(self.albedo.clone())),
-            ("normal", LayerData::Vector(self.normal.clone())),
-            ("position", LayerData::Vector(self.position.clone())),
-            ("depth", LayerData::Depth(self.depth.clone())),
-            ("object_id", LayerData::Id(self.object_id.clone())),
-            ("material_id", LayerData::Id(self.material_id.clone())),
-            ("samples", LayerData::Scalar(self.samples.clone())),
-            ("variance", LayerData::Scalar(self.variance.clone())),
-            ("cut_size", LayerData::Scalar(self.cut_size.clone())),
-            ("error_bound", LayerData::Scalar(self.error_bound.clone())),
+            ("direct", LayerData::Color(self.direct)),
+            ("indirect", LayerData::Color(self.indirect)),
+            ("albedo", LayerData::Color(self.albedo)),
+            ("normal", LayerData::Vector(self.normal)),
+            ("position", LayerData::Vector(self.position)),
+            ("depth", LayerData::Depth(self.depth)),
+            ("object_id", LayerData::Id(self.object_id)),
+            ("material_id", LayerData::Id(self.material_id)),
+            ("samples", LayerData::Scalar(self.samples)),
+            ("variance", LayerData::Scalar(self.variance)),
+            ("cut_size", LayerData::Scalar(self.cut_size)),
+            ("error_bound", LayerData::Scalar(self.error_bound)),
         ];
         for (name, data) in aovs {
             layers.push(name, data).expect("all planes have the picture's size and each its own name");

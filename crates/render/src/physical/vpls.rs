@@ -8,13 +8,14 @@ use lightcuts_kernel::bsdf::{MATT, PLASTIC, energy_at, lobes_of, mean_energy};
 use lightcuts_kernel::virtual_light::{VirtualLight, pack_direction, virtual_table};
 use std::f32::consts::PI;
 
-/// Traces a fixed number of light paths for the virtual lights of a pass, and judges them.
+/// Traces a fixed number of light paths for the virtual lights of a pass, and judges them. Once `is_over`, they are of no use.
 pub(crate) fn trace_vpls(
     scene: &Scene<'_>,
     origins: &Origins,
     rejection: Option<&Rejection>,
     paths: u32,
     stream: u32,
+    is_over: &(dyn Fn() -> bool + Sync),
 ) -> Left<Judged> {
     let tables = &scene.world.tables[..];
     trace_light(
@@ -30,6 +31,7 @@ pub(crate) fn trace_vpls(
                 None => Judged::kept(light),
             })
         },
+        is_over,
     )
 }
 

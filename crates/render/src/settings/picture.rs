@@ -25,7 +25,7 @@ impl Default for ImageSize {
 pub struct Sampling {
     /// Pattern of the samples.
     pub sampler: SamplerKind,
-    /// Samples of every pixel.
+    /// Samples of every pixel. In the physical model 0 is no limit, where time or noise is one.
     pub samples: u32,
     /// Samples of pixels that differ from a neighbour; no adaptive anti-aliasing unless above `samples`.
     pub adaptive_samples: u32,

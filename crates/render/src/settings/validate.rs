@@ -51,11 +51,23 @@ impl Settings {
         ensure("run.reproduce", true, plain, "512 x 512 pixels of one sample with it")
     }
 
+    /// Whether time or noise ends a render of the physical model.
+    pub fn has_other_limit(&self) -> bool {
+        let physical = &self.physical;
+        self.run.model == Model::Physical && (physical.time_limit > 0.0 || physical.noise > 0.0)
+    }
+
     fn validate_sampling(&self) -> Result<(), SettingsError> {
         let sampling = &self.sampling;
         let most = if self.run.model == Model::Physical { 1 << 24 } else { 4096 };
         let samples = sampling.samples;
-        ensure("sampling.samples", samples, (1..=most).contains(&samples), &format!("1 to {most}"))?;
+        let expected = if self.run.model == Model::Physical {
+            format!("1 to {most}, or 0 for no limit where there is one of time or noise")
+        } else {
+            format!("1 to {most}")
+        };
+        let is_enough = samples > 0 || self.has_other_limit();
+        ensure("sampling.samples", samples, samples <= most && is_enough, &expected)?;
         let adaptive = sampling.adaptive_samples;
         ensure("sampling.adaptive-samples", adaptive, adaptive <= 4096, "0 to 4096")?;
         number("sampling.adaptive-threshold", sampling.adaptive_threshold, 0.0, 1e6)?;

@@ -3,6 +3,7 @@
 mod agreement;
 mod closed_forms;
 mod geometry;
+mod limits;
 mod mapping;
 mod oracle;
 mod scenes;

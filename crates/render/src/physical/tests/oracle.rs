@@ -52,11 +52,11 @@ fn check(all: Vec3, cut: &Gathered, error: f32, what: &str) {
 
 /// The tree over what light paths leave.
 fn tree(scene: &Scene<'_>, origins: &Origins, paths: u32, stream: u32) -> ClusterTree {
-    ClusterTree::build(&lights(scene, origins, paths, stream), 4)
+    ClusterTree::build(&lights(scene, origins, paths, stream), 4, &|| false)
 }
 
 fn lights(scene: &Scene<'_>, origins: &Origins, paths: u32, stream: u32) -> Vec<VirtualLight> {
-    let left = trace_vpls(scene, origins, None, paths, stream);
+    let left = trace_vpls(scene, origins, None, paths, stream, &|| false);
     left.items.iter().filter_map(|judged| judged.light).collect()
 }
 
@@ -114,7 +114,7 @@ fn every_light_is_in_one_cluster_of_a_cut() {
     for (k, light) in lights.iter_mut().enumerate() {
         *light = VirtualLight { intensity: Vec3::splat(1.0 + (k % 7) as f32), ..first };
     }
-    let tree = ClusterTree::build(&lights, 4);
+    let tree = ClusterTree::build(&lights, 4, &|| false);
     let (mut heap, mut counts) = (CutHeap::default(), Counts::default());
     let mut lit = 0;
     for (pixel, at) in every_pixel(&scene, 12) {
