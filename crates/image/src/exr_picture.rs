@@ -46,7 +46,7 @@ pub(crate) fn decode_exr_picture(path: &Path, bytes: &[u8], options: &LightOptio
     let is_wanted = |name: &str| place.names.iter().any(|wanted| wanted == name);
     let decoded = decode(path, bytes, place.part, &options.limits, is_wanted)?;
     let mut image = image(&decoded, &place.names)?;
-    let is_color = place.names.first().is_some_and(|name| name == "R" || name.ends_with(".R"));
+    let is_color = place.names.first().is_some_and(|name| name.rsplit('.').next() == Some("R"));
     let matrix = space.matrix.as_ref().filter(|_| is_color);
     if let Some(matrix) = matrix
         && !options.is_data

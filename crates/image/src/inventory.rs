@@ -54,12 +54,11 @@ pub fn picture_inventory(path: impl AsRef<Path>) -> Result<Inventory, ImageError
     if format == PictureFormat::Exr {
         return of_exr(path, &bytes);
     }
-    let (frame, channels, remarks) = match decode_light(path, &bytes, &LightOptions::default()) {
-        Some(light) => light.map(|light| (light.frame, light.channels, light.remarks))?,
-        None => {
-            let png = decode_png(path, &bytes)?;
-            (Frame::whole(png.codes.width(), png.codes.height()), png.channels, Vec::new())
-        }
+    let (frame, channels, remarks) = if let Some(light) = decode_light(path, &bytes, &LightOptions::default()) {
+        light.map(|light| (light.frame, light.channels, light.remarks))?
+    } else {
+        let png = decode_png(path, &bytes)?;
+        (Frame::whole(png.codes.width(), png.codes.height()), png.channels, Vec::new())
     };
     let kind = if channels.without_alpha() == Channels::Grey { "grey" } else { "color" };
     let layers = vec![PictureLayer { name: BEAUTY.to_owned(), kind }];

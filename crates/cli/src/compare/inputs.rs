@@ -36,7 +36,9 @@ impl Inputs {
         let (reference, test) = rayon::join(|| read(&args.reference), || read(&args.test));
         let (reference, test) = (reference?, test?);
         let warnings = warnings(args, &reference, &test);
-        warnings.iter().for_each(|warning| console::warn(warning));
+        for warning in &warnings {
+            console::warn(warning);
+        }
         check(args, &reference, &test)?;
         Ok(Self {
             hold_light: reference.holds_light && test.holds_light,

@@ -33,7 +33,9 @@ fn read_component(bytes: &mut &[u8], line: &mut [[u8; 4]], component: usize) -> 
         at += length;
         if is_run {
             let [value] = take::<1>(bytes)?;
-            places.iter_mut().for_each(|pixel| pixel[component] = value);
+            for pixel in places {
+                pixel[component] = value;
+            }
         } else {
             let (values, rest) = bytes.split_at_checked(length).ok_or_else(ended)?;
             *bytes = rest;
