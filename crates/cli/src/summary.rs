@@ -97,7 +97,7 @@ fn samples(stats: &Stats, model: Model) -> String {
         End::Interrupted => Some(", interrupted".to_owned()),
     });
     if stats.end == End::Interrupted && model == Model::Thesis {
-        let mut stages = stats.passes.iter().rev().map(|pass| pass.name.as_ref());
+        let mut stages = stats.passes.iter().rev().map(|pass| &*pass.name);
         let last = stages.find(|&name| name != Stage::Develop.name());
         parts.extend(last.map(|name| format!(" in the stage {}", name.replace('_', " "))));
     }
