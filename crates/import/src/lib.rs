@@ -7,6 +7,7 @@
 //! every scene, whatever its format, is checked by its `validate` in `lightcuts-scene`; the importers only turn its issues into
 //! messages that point at the field.
 
+mod anchor;
 mod error;
 mod fault;
 mod files;

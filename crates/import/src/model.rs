@@ -6,6 +6,7 @@ use crate::ply::{self, PlyFile};
 use crate::polygon::Cut;
 use crate::report::Report;
 use crate::{Fault, obj};
+use glam::DVec3;
 use lightcuts_scene::MeshDesc;
 use std::path::Path;
 
@@ -14,6 +15,8 @@ use std::path::Path;
 pub(crate) struct Model {
     /// Triangles without materials.
     pub(crate) mesh: MeshDesc,
+    /// What the mesh's positions are relative to, in the file's coordinates.
+    pub(crate) origin: DVec3,
     /// Which triangles have which of `materials`: from a run's start to the next run's.
     pub(crate) runs: Vec<MaterialRun>,
     /// Smoothing groups likewise; none if the file says nothing of them.

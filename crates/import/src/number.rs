@@ -32,6 +32,12 @@ pub(crate) fn parse_number(token: &str) -> Result<f32, NumberError> {
     if value.is_finite() { Ok(value) } else { Err(NumberError::TooLarge) }
 }
 
+/// The same with the precision of 64 bits.
+pub(crate) fn parse_exact(token: &str) -> Result<f64, NumberError> {
+    parse_number(token)?;
+    token.parse().map_err(|_| NumberError::Malformed)
+}
+
 /// Length in bytes of the number that `text` starts with; 0 if it starts with none.
 pub(crate) fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();

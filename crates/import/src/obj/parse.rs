@@ -3,13 +3,14 @@
 use super::face::{Corner, Forward};
 use super::ignored::Ignored;
 use crate::Fault;
+use crate::anchor::Anchor;
 use crate::lines::{Lines, ReadError, length_without_comment, words};
 use crate::model::{self, MaterialRun, Model, SmoothingRun};
-use crate::number::{NUMBER_EXAMPLE, parse_number};
+use crate::number::{NUMBER_EXAMPLE, NumberError, parse_exact, parse_number};
 use crate::polygon::{Cut, Faces};
 use crate::report::{Report, Tally};
 use crate::resolver::FileError;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -54,6 +55,8 @@ pub(super) struct Parser<'a> {
     pub(super) faces: Faces,
     ignored: Ignored,
     colors: Tally,
+    cut: Cut,
+    anchor: Anchor,
 }
 
 impl<'a> Parser<'a> {
@@ -70,6 +73,8 @@ impl<'a> Parser<'a> {
             faces: Faces::new(cut),
             ignored: Ignored::default(),
             colors: Tally::default(),
+            cut,
+            anchor: Anchor::new(cut),
         }
     }
 
@@ -96,11 +101,11 @@ impl<'a> Parser<'a> {
         match keyword {
             "v" => self.vertex(lines, numbers),
             "vn" => {
-                let normal = self.numbers::<3>(lines, numbers, 3);
+                let normal = self.numbers(lines, numbers, 3, parse_number);
                 self.model.mesh.normals.push(Vec3::from_array(normal));
             }
             "vt" => {
-                let coordinates = self.numbers::<2>(lines, numbers, 1);
+                let coordinates = self.numbers(lines, numbers, 1, parse_number);
                 self.model.mesh.texture_coordinates.push(coordinates);
             }
             "f" | "fo" => self.face(lines, start..numbers.end),
@@ -116,8 +121,13 @@ impl<'a> Parser<'a> {
     }
 
     fn vertex(&mut self, lines: &Lines<'_>, numbers: Range<usize>) {
-        let position = self.numbers::<3>(lines, numbers.clone(), 3);
-        self.model.mesh.positions.push(Vec3::from_array(position));
+        let position = if self.cut == Cut::Fans {
+            Vec3::from_array(self.numbers(lines, numbers.clone(), 3, parse_number))
+        } else {
+            let exact = self.numbers(lines, numbers.clone(), 3, parse_exact);
+            self.anchor.relative(DVec3::from_array(exact))
+        };
+        self.model.mesh.positions.push(position);
         if words(lines.text(), numbers.clone()).nth(WITH_COLOR - 1).is_some() {
             self.colors.note(|| lines.fault(numbers, ""));
         }
@@ -125,9 +135,15 @@ impl<'a> Parser<'a> {
 
     /// At least `least` numbers, at most N; what follows them (weights, vertex colours) is ignored. Zeros after an
     /// error, so that later indices still point at what was meant.
-    fn numbers<const N: usize>(&mut self, lines: &Lines<'_>, rest: Range<usize>, least: usize) -> [f32; N] {
+    fn numbers<T: Copy + Default, const N: usize>(
+        &mut self,
+        lines: &Lines<'_>,
+        rest: Range<usize>,
+        least: usize,
+        parse: fn(&str) -> Result<T, NumberError>,
+    ) -> [T; N] {
         let text = lines.text();
-        let mut values = [0.0; N];
+        let mut values = [T::default(); N];
         let mut words = words(text, rest.clone());
         for (i, value) in values.iter_mut().enumerate() {
             let Some(span) = words.next() else {
@@ -139,12 +155,12 @@ impl<'a> Parser<'a> {
                 }
                 break;
             };
-            match parse_number(&text[span.clone()]) {
+            match parse(&text[span.clone()]) {
                 Ok(number) => *value = number,
                 Err(error) => {
                     let message = error.message(&text[span.clone()]);
                     self.error(|| lines.fault(span, &message).expected(NUMBER_EXAMPLE));
-                    return [0.0; N];
+                    return [T::default(); N];
                 }
             }
         }
@@ -195,6 +211,7 @@ impl<'a> Parser<'a> {
         self.faces.warn(self.report);
         self.ignored.warn(self.report);
         self.colors.warn(self.report, |_| model::VERTEX_COLORS_UNUSED.to_owned());
+        self.model.origin = self.anchor.origin();
         Some(self.model)
     }
 }

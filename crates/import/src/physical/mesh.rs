@@ -11,6 +11,7 @@ use crate::files::AssetError;
 use crate::model::{self, Model, ModelFormat};
 use crate::obj::{Libraries, MapPlacement};
 use crate::polygon::Cut;
+use glam::{DAffine3, DVec3};
 use lightcuts_scene::physical::{SurfaceDesc, SurfaceId};
 use lightcuts_scene::{MeshDesc, MeshId};
 use std::collections::HashMap;
@@ -30,6 +31,8 @@ pub(super) struct Models {
     loaded: HashMap<MeshId, Loaded>,
     /// What an object that names no material takes, by its mesh; `None` if the model has no materials of its own.
     own: HashMap<MeshId, Option<Own>>,
+    /// What the positions of models are relative to.
+    origins: HashMap<MeshId, DVec3>,
     libraries: Libraries,
     pub(super) smoothing: Smoothing,
     pub(super) unit_cube: Option<MeshId>,
@@ -95,6 +98,7 @@ impl<'d> Builder<'d> {
         let mut mesh = std::mem::take(&mut model.mesh);
         name.clone_into(&mut mesh.name);
         let id = self.push_mesh(table, mesh);
+        self.models.origins.insert(id, model.origin);
         self.models.smoothing.add_groups(id, std::mem::take(&mut model.smoothing));
         self.models.loaded.insert(id, Loaded { path, model });
         id
@@ -117,6 +121,12 @@ impl<'d> Builder<'d> {
         let message = format!("there is no mesh `{name}`{}", did_you_mean(&name, &known));
         self.reader.error_at(table, "mesh", &message, "the name of a [[mesh]]");
         None
+    }
+
+    /// The placement of a mesh whose file is placed so.
+    pub(super) fn placed(&self, mesh: MeshId, file: DAffine3) -> DAffine3 {
+        let origin = self.models.origins.get(&mesh).copied().unwrap_or_default();
+        file * DAffine3::from_translation(origin)
     }
 
     /// What an object takes that names no material: its model has some, or names some that are nowhere.

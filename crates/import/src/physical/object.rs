@@ -79,9 +79,11 @@ impl<'d> Builder<'d> {
     }
 
     fn instance(&mut self, table: Table<'_>) -> Option<PhysicalShape> {
+        let mesh = self.named_mesh(table)?;
+        let file = placement(&mut self.reader, table)?;
         Some(PhysicalShape::Mesh {
-            mesh: self.named_mesh(table)?,
-            placement: placement(&mut self.reader, table)?,
+            mesh,
+            placement: self.placed(mesh, file),
             smooth: self.reader.or(table, "smooth", FLAG, true)?,
             override_material: true,
         })

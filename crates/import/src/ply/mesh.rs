@@ -2,11 +2,12 @@
 
 use super::header::{Element, Header, Property};
 use super::values::{Row, Values};
+use crate::anchor::Anchor;
 use crate::lines::ReadError;
 use crate::model;
 use crate::polygon::{Cut, Faces};
 use crate::report::Report;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lightcuts_scene::{MeshDesc, MeshTriangle};
 
 /// Numbers of a vertex that a mesh has a use for, in this order: position, normal, texture coordinates.
@@ -19,21 +20,22 @@ const TEXTURE_COORDINATES: [(&str, &str); 4] =
 /// Names of the red channel of colours that occur.
 const REDS: [&str; 4] = ["red", "r", "diffuse_red", "diffuse_r"];
 
-/// Reads the body of a file as a mesh of at most `room` vertices, normals, texture coordinates and triangles together.
+/// Reads the body of a file as a mesh, with what its positions are relative to, of at most `room` vertices, normals, texture coordinates and triangles together.
 pub(super) fn read(
     header: &Header,
     values: &mut Values<'_>,
     room: usize,
     cut: Cut,
     report: &mut Report,
-) -> Result<MeshDesc, ReadError> {
+) -> Result<(MeshDesc, DVec3), ReadError> {
     let Some(vertices) = header.element("vertex") else {
         let fault = header.fault(values.file(), "the model has no vertices");
         return Err(ReadError::Content(Box::new(fault.expected("an element `vertex`"))));
     };
     let layout = Layout::new(vertices, values.file())?;
     let (mesh, faces) = (MeshDesc::default(), Faces::new(cut));
-    let mut reader = Reader { mesh, layout, vertices, room, corners: Vec::new(), faces };
+    let anchor = Anchor::new(cut);
+    let mut reader = Reader { mesh, anchor, layout, vertices, room, corners: Vec::new(), faces };
     reader.check_counts(header, values)?;
     warn_unused(header, &reader.layout, values.file(), report);
     for element in &header.elements {
@@ -45,7 +47,7 @@ pub(super) fn read(
     }
     reader.faces.cut_late(&mut reader.mesh);
     reader.faces.warn(report);
-    Ok(reader.mesh)
+    Ok((reader.mesh, reader.anchor.origin()))
 }
 
 /// Warns about colours, texture coordinates of faces, and elements that are not used.
@@ -104,6 +106,7 @@ impl Layout {
 
 struct Reader<'h> {
     mesh: MeshDesc,
+    anchor: Anchor,
     layout: Layout,
     vertices: &'h Element,
     room: usize,
@@ -134,8 +137,8 @@ impl Reader<'_> {
                     None => skip_property(property, values, row)?,
                 }
             }
-            let [x, y, z, normal_x, normal_y, normal_z, u, v] = slots;
-            self.mesh.positions.push(Vec3::new(x, y, z));
+            self.mesh.positions.push(self.anchor.relative(DVec3::new(slots[0], slots[1], slots[2])));
+            let [_, _, _, normal_x, normal_y, normal_z, u, v] = slots.map(|value| value as f32);
             if self.layout.has_normals {
                 self.mesh.normals.push(Vec3::new(normal_x, normal_y, normal_z));
             }

@@ -33,7 +33,7 @@ pub(crate) struct PlyFile<'a> {
 /// The first error ends the search and goes to `report`; the model is `None` then. Fails if the file cannot be read.
 pub(crate) fn parse(file: PlyFile<'_>, room: usize, cut: Cut, report: &mut Report) -> Result<Option<Model>, FileError> {
     match read(file, room, cut, report) {
-        Ok(mesh) => Ok(Some(Model { mesh, ..Model::default() })),
+        Ok((mesh, origin)) => Ok(Some(Model { mesh, origin, ..Model::default() })),
         Err(ReadError::Content(fault)) => {
             report.error(|| *fault);
             Ok(None)
@@ -42,7 +42,7 @@ pub(crate) fn parse(file: PlyFile<'_>, room: usize, cut: Cut, report: &mut Repor
     }
 }
 
-fn read(file: PlyFile<'_>, room: usize, cut: Cut, report: &mut Report) -> Result<MeshDesc, ReadError> {
+fn read(file: PlyFile<'_>, room: usize, cut: Cut, report: &mut Report) -> Result<(MeshDesc, glam::DVec3), ReadError> {
     let mut reader = BufReader::with_capacity(1 << 16, file.reader);
     let header = Header::read(&mut reader, file.path, file.name, report)?;
     let mut values = Values::new(&header, Box::new(reader), file.path, file.name, file.limit);

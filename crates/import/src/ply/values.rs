@@ -3,7 +3,7 @@
 use super::header::{Element, Encoding, Header, Number};
 use crate::Fault;
 use crate::lines::{Lines, ReadError, words};
-use crate::number::{NUMBER_EXAMPLE, parse_number};
+use crate::number::{NUMBER_EXAMPLE, parse_exact};
 use crate::resolver::FileError;
 use std::io::{self, Read};
 use std::ops::Range;
@@ -112,16 +112,16 @@ impl<'a> Values<'a> {
         Ok(value as i64)
     }
 
-    /// The next number, which must be finite; `name` is what it is.
-    pub(super) fn finite(&mut self, number: Number, name: &str, row: Row<'_>) -> Result<f32, ReadError> {
+    /// The next number, which a 32-bit one must be able to hold; `name` is what it is.
+    pub(super) fn finite(&mut self, number: Number, name: &str, row: Row<'_>) -> Result<f64, ReadError> {
         if let Body::Text { .. } = self.body {
             self.next_word(row)?;
             let word = self.word();
-            return parse_number(word).map_err(|error| self.error(row, &error.message(word), NUMBER_EXAMPLE));
+            return parse_exact(word).map_err(|error| self.error(row, &error.message(word), NUMBER_EXAMPLE));
         }
-        let value = self.next_bytes(number, row)? as f32;
-        if !value.is_finite() {
-            return Err(self.error(row, &format!("{name} is {value}"), "a finite 32-bit number"));
+        let value = self.next_bytes(number, row)?;
+        if !(value as f32).is_finite() {
+            return Err(self.error(row, &format!("{name} is {}", value as f32), "a finite 32-bit number"));
         }
         Ok(value)
     }

@@ -159,3 +159,24 @@ fn the_cornell_box_is_read() {
     assert_eq!(made.materials[5].emission.map(|emission| emission.radiance), Some(Vec3::new(17.0, 12.0, 4.0)));
     assert_eq!(made.camera.focus_distance, 800.0);
 }
+
+/// Models of maps and buildings have coordinates in which 32-bit floats tell nothing below a meter apart.
+#[test]
+fn models_far_from_their_origin_keep_their_form() {
+    let corners =
+        [[3_512_345.125, 5_400_000.5, 20.25], [3_512_345.375, 5_400_000.5, 20.25], [3_512_345.125, 5_400_001.5, 21.25]];
+    let obj: String = corners.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect::<String>() + "f 1 2 3\n";
+    let header = "element vertex 3\nproperty double x\nproperty double y\nproperty double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let text = corners.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect::<String>();
+    let text = format!("ply\nformat ascii 1.0\n{header}{text}3 0 1 2\n").into_bytes();
+    let mut binary = format!("ply\nformat binary_little_endian 1.0\n{header}").into_bytes();
+    binary.extend(corners.iter().flatten().flat_map(|c: &f64| c.to_le_bytes()));
+    binary.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]);
+    for (name, file) in [("m.obj", obj.into_bytes()), ("m.ply", text), ("m.ply", binary)] {
+        let object = OBJECT.replace("m.obj", name);
+        let body = format!("{CLAY}{object}material = \"clay\"\ntranslate = [-3512345, -5400000, 0]\n");
+        let made = scene(&body, &[(name, &file)]);
+        let (lower, upper) = made.objects[0].shape.bounds(&made.meshes).expect("a triangle");
+        assert_eq!((lower.to_array(), upper.to_array()), ([0.125, 0.5, 20.25], [0.375, 1.5, 21.25]), "{name}");
+    }
+}
