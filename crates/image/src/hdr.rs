@@ -120,7 +120,7 @@ mod tests {
 
     fn read(text: &str, pixels: &[u8], is_data: bool) -> Result<Light, ImageError> {
         let limits = PictureLimits { side: 1000, pixels: 4000, ..PictureLimits::default() };
-        let options = LightOptions { limits, is_data, ..LightOptions::default() };
+        let options = LightOptions { is_data, limits, ..LightOptions::default() };
         decode_hdr(Path::new("a.hdr"), &[text.as_bytes(), pixels].concat(), &options)
     }
 
