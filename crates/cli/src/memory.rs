@@ -126,7 +126,7 @@ mod tests {
         let world = PhysicalWorld::new(&scene()).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let mut settings = Settings::for_physical();
-        (settings.image.width, settings.image.height) = (900, 900);
+        (settings.image.width, settings.image.height) = (600, 600);
         for (integrator, samples) in [(Integrator::Path, 2), (Integrator::Lightcuts, 1), (Integrator::Auto, 6)] {
             settings.physical.integrator = integrator;
             settings.sampling.samples = samples;
@@ -138,7 +138,7 @@ mod tests {
             let path = folder.path().join("a.exr");
             lightcuts::image::write_exr(&path, &rendering.into_layers()).unwrap();
             let (used, need) = (resident("VmHWM:") - before, need(&settings, &[(Kind::Exr, path)]));
-            let per_pixel = |bytes: u64| bytes as f64 / (900.0 * 900.0);
+            let per_pixel = |bytes: u64| bytes as f64 / (600.0 * 600.0);
             println!("{integrator:?}: {:.0} bytes a pixel used, {:.0} asked for", per_pixel(used), per_pixel(need));
             assert!(used <= need && used > need / 3, "{integrator:?}: {used} {need}");
         }

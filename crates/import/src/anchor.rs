@@ -42,7 +42,7 @@ mod tests {
         let far = DVec3::new(3.5e6, -2.0, 1e5 + 0.125);
         let mut anchor = Anchor::new(Cut::Outlines);
         assert_eq!(anchor.relative(far), Vec3::new(0.0, 0.0, 0.125));
-        assert_eq!(anchor.relative(far + DVec3::X * 0.001), Vec3::new(0.001, 0.0, 0.125));
+        assert_eq!(anchor.relative(far + DVec3::X / 1024.0), Vec3::new(1.0 / 1024.0, 0.0, 0.125));
         assert_eq!(anchor.origin(), DVec3::new(3.5e6, -2.0, 1e5));
         for (mut anchor, vertex) in [(Anchor::new(Cut::Outlines), DVec3::ONE), (Anchor::new(Cut::Fans), far)] {
             assert_eq!((anchor.relative(vertex), anchor.origin()), (vertex.as_vec3(), DVec3::ZERO));

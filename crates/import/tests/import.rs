@@ -340,10 +340,9 @@ fn the_thesis_models_have_their_triangles() {
 }
 
 /// Files made to be refused, with the reason.
-const REFUSED: [(&str, &str); 7] = [
+const REFUSED: [(&str, &str); 6] = [
     ("catmark_torus_creases0.obj", "62:7: normal 1 does not exist"),
     ("smoothing-group-two-squares.obj", "21:6: normal 1 does not exist"),
-    ("invalid-face-definition.obj", "15:1: the face has 1 corners"),
     ("invalid-relative-texture-index.obj", "2:15: texture coordinate -2 does not exist"),
     ("invalid-relative-vertex-index.obj", "1:3: vertex -4 does not exist"),
     ("issue-140-zero-face-idx.obj", "16:3: index 0"),

@@ -69,7 +69,7 @@ fn every_format_of_light_is_developed_and_what_holds_none_is_refused() {
     assert!(stderr(&folder.run("develop a.hdr --layer x -o b.png").code(3)).contains("only EXR files have layers"));
     for wrong in ["0", "-1", "nan", "inf", "1e13"] {
         let said = stderr(&folder.run(&format!("develop a.hdr --exposure {wrong} -o b.png")).code(2));
-        assert!(said.contains("display.exposure is") && said.contains("or `auto`"), "{said}");
+        assert!(said.contains("--exposure is") && said.contains("or `auto`"), "{said}");
     }
     assert!(stderr(&folder.run("develop a.hdr --exposure bright").code(2)).contains("or `auto`"));
 }

@@ -165,10 +165,10 @@ fn the_cornell_box_is_read() {
 fn models_far_from_their_origin_keep_their_form() {
     let corners =
         [[3_512_345.125, 5_400_000.5, 20.25], [3_512_345.375, 5_400_000.5, 20.25], [3_512_345.125, 5_400_001.5, 21.25]];
-    let obj: String = corners.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect::<String>() + "f 1 2 3\n";
+    let rows = |start: &str| corners.map(|[x, y, z]| format!("{start}{x} {y} {z}\n")).concat();
+    let obj = rows("v ") + "f 1 2 3\n";
     let header = "element vertex 3\nproperty double x\nproperty double y\nproperty double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    let text = corners.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect::<String>();
-    let text = format!("ply\nformat ascii 1.0\n{header}{text}3 0 1 2\n").into_bytes();
+    let text = format!("ply\nformat ascii 1.0\n{header}{}3 0 1 2\n", rows("")).into_bytes();
     let mut binary = format!("ply\nformat binary_little_endian 1.0\n{header}").into_bytes();
     binary.extend(corners.iter().flatten().flat_map(|c: &f64| c.to_le_bytes()));
     binary.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]);

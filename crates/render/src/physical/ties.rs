@@ -16,9 +16,17 @@ const SPREAD: f32 = 1e-2;
 
 impl Scene<'_> {
     /// Of a hit and those in its place the one that is met: the first that shines towards the ray, else the first in file order.
+    #[inline]
     pub(super) fn first_of_tied(&self, ray: &Ray, hit: Hit) -> Hit {
+        match self.world.ties.of(hit.primitive) {
+            [] => hit,
+            tied => self.first_of(ray, hit, tied),
+        }
+    }
+
+    fn first_of(&self, ray: &Ray, hit: Hit, tied: &[Tied]) -> Hit {
         let rank = |hit: &Hit| (!self.shines(ray, hit), hit.primitive);
-        let tied = self.world.ties.of(hit.primitive).iter().filter_map(|tied| self.meets(ray, &hit, tied));
+        let tied = tied.iter().filter_map(|tied| self.meets(ray, &hit, tied));
         tied.chain([hit]).min_by_key(rank).unwrap_or(hit)
     }
 

@@ -219,7 +219,7 @@ fn add_light(light: &LightDesc, strength: f32, light_scale: f32, made: &mut Phys
     let mut add = |kind| made.lights.push(EmitterDesc { kind, location: light.location });
     match light.kind {
         LightKind::Omni { position } => {
-            add(EmitterKind::Point { position: position.as_dvec3(), intensity: color * strength })
+            add(EmitterKind::Point { position: position.as_dvec3(), intensity: color * strength });
         }
         LightKind::Hemisphere { position, direction } => add(EmitterKind::Spot {
             position: position.as_dvec3(),

@@ -100,7 +100,7 @@ pub(super) fn overlap(builder: &mut Builder, extent: f32) {
 }
 
 fn grown(points: &[Vec3; 3], extent: f64) -> [Vec3; 3] {
-    let exact = points.map(|p| p.as_dvec3());
+    let exact = points.map(Vec3::as_dvec3);
     let [a, b, c] = exact;
     let middle = (a + b + c) / 3.0;
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));

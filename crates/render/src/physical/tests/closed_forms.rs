@@ -49,7 +49,7 @@ fn white_furnace() {
         // What passes through rough glass comes by few paths of great weight.
         let samples = if name == "rough glass" { 512 } else { 96 };
         for integrator in [Integrator::Path, Integrator::Lightcuts] {
-            let rendering = render(&scene, &settings(integrator, 16, samples));
+            let rendering = render(&scene, &settings(integrator, 12, samples));
             let mean = mean(&rendering);
             println!("{name}, {integrator:?}: {:.4}", mean.x);
             assert!((mean.x - 1.0).abs() < 0.005, "{name}, {integrator:?}: {mean}");

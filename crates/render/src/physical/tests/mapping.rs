@@ -53,7 +53,7 @@ fn normal_maps_lean_along_v() {
         let mut mesh = quad(Vec3::ZERO, Vec3::X, Vec3::Y);
         let mirror = |uv: &mut [f32; 2]| {
             if k & 1 != 0 {
-                uv[0] = -3.0 * uv[0];
+                uv[0] *= -3.0;
             }
             if k & 2 != 0 {
                 uv[1] = 2.0 - uv[1];
