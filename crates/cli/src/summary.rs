@@ -153,7 +153,7 @@ fn kind_in_words(kind: &str) -> String {
 
 fn faults(count: u32) -> String {
     let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
-    format!("a device did not return its result {times}; that work was done again, and the picture is whole")
+    format!("a device failed {times}; its work was redone and the picture is complete")
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Images of the physical model: half floats of linear light, with all their smaller copies.
+//! Images of the physical model: half floats of linear light, with all their mip levels.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec3, Vec4};

@@ -33,12 +33,12 @@ pub enum LightKind {
         /// Axis of the hemisphere, any length but zero.
         direction: Vec3,
     },
-    /// Parallel light that travels along `direction` (`DIR`).
+    /// Directional light that travels along `direction` (`DIR`).
     Directional {
         /// Direction of travel, any length but zero.
         direction: Vec3,
     },
-    /// A luminous square (`SQU_A`), cut into hemisphere lights that share its colour; it is visible too.
+    /// An emissive square (`SQU_A`), cut into hemisphere lights that share its colour; it is visible too.
     Area {
         /// Centre in scene units.
         center: Vec3,

@@ -19,7 +19,7 @@ Exit codes:
 
 Conditions without --fail:
   non_finite>0, pdiff_pass<1, flip_ldr>0.05; where both pictures hold light (EXR, PFM, HDR, PNG of
-  16 bits), flip_hdr>0.05 and relbias>0.1 too. The first is always there, beside those of --fail.
+  16 bits), flip_hdr>0.05 and relbias>0.1 too. The first always applies, even with --fail.
 
 Examples:
   lightcuts compare reference.exr test.exr
@@ -137,8 +137,8 @@ pub(crate) struct FlipArgs {
 pub(crate) struct CompareOutputArgs {
     /// Difference map to write, .png; may be repeated.
     ///
-    /// [KIND=]FILE.png; the kinds are flip, flip-hdr, pdiff, difference (signed), relmse and absolute. Without a kind,
-    /// the file name without .png is used if it is one, else flip.
+    /// [KIND=]FILE.png; the kinds are flip, flip-hdr, pdiff, difference (signed), relmse and absolute. Without KIND=,
+    /// it is taken from the file name if that is a kind, else flip.
     #[arg(long = "map", value_name = "[KIND=]FILE", value_hint = ValueHint::FilePath)]
     pub(crate) maps: Vec<PathBuf>,
     /// Print one JSON object for machines.
@@ -175,9 +175,9 @@ impl From<TransferChoice> for Transfer {
 /// Which channel is read as red.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ChannelOrder {
-    /// Blue, as in the published figures
+    /// Blue first, as in the published figures
     Bgr,
-    /// Red, as in the paper
+    /// Red first, as in the paper
     Rgb,
 }
 

@@ -7,6 +7,8 @@ use std::path::PathBuf;
 
 /// What the help text of `develop` ends with.
 pub(super) const AFTER_HELP: &str = "\
+develop's default transfer is srgb, whatever the model.
+
 Examples:
   lightcuts develop a.exr --exposure 2 -o a.png
   lightcuts develop a.exr --exposure auto --tone-mapping local -o a.png
@@ -16,7 +18,7 @@ Examples:
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub(crate) struct DevelopArgs {
-    /// A picture that holds light: EXR, Radiance HDR or PFM of any program, told by content.
+    /// A picture that holds light: EXR, Radiance HDR or PFM from any program; the format is detected by content.
     #[arg(value_name = "PICTURE", value_hint = ValueHint::FilePath)]
     pub(crate) picture: PathBuf,
     /// File to write, .png [default: PICTURE.png in the current folder]
@@ -25,7 +27,7 @@ pub(crate) struct DevelopArgs {
     /// Layer of an EXR instead of the picture itself, such as `direct`; see `lightcuts info`.
     #[arg(long, value_name = "NAME")]
     pub(crate) layer: Option<String>,
-    /// Do not say what was written.
+    /// Do not print what was written.
     #[arg(short, long)]
     pub(crate) quiet: bool,
     #[command(flatten)]

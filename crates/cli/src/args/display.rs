@@ -8,7 +8,7 @@ use serde::Serialize;
 #[command(next_help_heading = "Bloom")]
 #[serde(rename_all = "kebab-case")]
 pub(crate) struct BloomFlags {
-    /// Add a glow around bright areas, in EXR and PNG [default: false]
+    /// Add a glow around bright areas, before tone mapping [default: false]
     #[arg(id = "bloom.enabled", long = "bloom", value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     enabled: Option<bool>,
     /// Radius of the glow in pixels, 0 to 1024; scale it with the picture to keep the look [default: 12]
@@ -25,8 +25,8 @@ pub(crate) struct BloomFlags {
 pub(crate) struct DisplayFlags {
     /// Factor on the light of a PNG, or `auto` [default: 1]
     ///
-    /// A plain factor, not stops: 2 is twice as bright. With 1 a radiance of 1 is white. `auto`: the geometric mean of the
-    /// picture's luminance becomes middle grey, 0.18, without the darkest and the brightest twentieth of what is lit.
+    /// A plain factor, not stops: 2 is twice as bright. With 1 a radiance of 1 is white. `auto` maps the geometric mean
+    /// luminance, ignoring the darkest and brightest 5 % of lit pixels, to middle grey (0.18).
     #[arg(id = "display.exposure", long = "exposure", value_name = "FACTOR")]
     exposure: Option<Exposure>,
     /// Tone mapping operator for PNG; an EXR always holds linear light [default: none]
@@ -58,10 +58,10 @@ struct GlobalFlags {
 #[derive(Debug, Default, Clone, Args, Serialize)]
 #[serde(rename_all = "kebab-case")]
 struct LocalFlags {
-    /// With `--tone-mapping local`: the key, to which the mean luminance is mapped; higher is brighter [default: 0.18]
+    /// With `--tone-mapping local`: key value, where the mean luminance is mapped; higher is brighter [default: 0.18]
     #[arg(id = "display.local.key", long = "local-key", value_name = "X")]
     key: Option<f32>,
-    /// With `--tone-mapping local`: sharpening; higher prefers small neighbourhoods [default: 8]
+    /// With `--tone-mapping local`: sharpening; higher favours small neighbourhoods [default: 8]
     #[arg(id = "display.local.phi", long = "local-phi", value_name = "X")]
     phi: Option<f32>,
     /// With `--tone-mapping local`: number of neighbourhood sizes, 1 to 24 [default: 8]

@@ -33,7 +33,7 @@ use clap_complete::Shell;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// What every help text ends with.
+/// What the help texts of the program and of `render` end with.
 const AFTER_HELP: &str = "\
 Exit codes:
     0  success
@@ -50,6 +50,14 @@ Environment:
 
 Start with `lightcuts info SCENE`, then `lightcuts render SCENE`.";
 
+/// What the help texts of commands that render nothing end with.
+const VIEWING_AFTER_HELP: &str = "\
+Exit codes:
+    0  success
+    1  the output could not be written
+    2  bad usage or parameters
+    3  an input is missing, cannot be read or is malformed";
+
 /// Render scenes with global illumination from virtual point lights (VPLs) and lightcuts.
 #[derive(Debug, Parser)]
 #[command(name = "lightcuts", version, after_help = AFTER_HELP, arg_required_else_help = true, max_term_width = 100)]
@@ -64,11 +72,11 @@ pub(crate) struct Cli {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Render a scene, or render a picture or a job file again.
+    /// Render a scene, or re-render from a picture or job file.
     #[command(after_help = AFTER_HELP)]
     Render(Box<RenderArgs>),
     /// Show how a scene was understood, or what a picture contains.
-    #[command(after_help = AFTER_HELP)]
+    #[command(after_help = VIEWING_AFTER_HELP)]
     Info(InfoArgs),
     /// List the devices that can render, and which one is used by default.
     #[command(after_help = device::AFTER_HELP)]
@@ -80,13 +88,13 @@ pub(crate) enum Command {
     #[command(after_help = develop::AFTER_HELP)]
     Develop(Box<DevelopArgs>),
     /// Show a layer of a picture (cut sizes, variance, depth, ...) in false colours with a scale.
-    #[command(after_help = AFTER_HELP)]
+    #[command(after_help = VIEWING_AFTER_HELP)]
     Heatmap(HeatmapArgs),
     /// Run the renders of an experiment file and record times, counts and errors, one line per render.
-    #[command(after_help = AFTER_HELP)]
+    #[command(after_help = experiment::AFTER_HELP)]
     Experiment(ExperimentArgs),
     /// Make tables, charts and a web page from an experiment's results, without rendering.
-    #[command(after_help = AFTER_HELP)]
+    #[command(after_help = VIEWING_AFTER_HELP)]
     Report(ReportArgs),
     /// Print a completion script for a shell, to be stored where that shell looks for completions.
     Completions {
@@ -105,7 +113,7 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
     /// A scene, or a picture: EXR, PNG, Radiance HDR or PFM.
-    #[arg(value_name = "SCENE", value_hint = ValueHint::FilePath)]
+    #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) path: PathBuf,
     #[command(flatten)]
     pub(crate) search: SearchArgs,
@@ -133,7 +141,7 @@ pub(crate) struct CreaseArgs {
     /// Angle between faces, in degrees, up to which meshes without normals look smooth; 0 shows every face flat
     /// [default: that of each object, 40 where it has none]
     ///
-    /// Physical scenes in TOML only. It takes the place of every object's `crease-angle`.
+    /// Physical scenes in TOML only. Overrides every object's `crease-angle`.
     #[arg(id = "crease-angle", long = "crease-angle", value_name = "DEGREES", value_parser = value::angle)]
     pub(crate) angle: Option<f32>,
 }

@@ -12,15 +12,15 @@ pub(crate) struct PhysicalFlags {
     ///
     /// `lightcuts`: samples direct light, and takes indirect light from VPLs (new ones in each pass) through cuts by
     /// error bound; best where light comes around corners. `path`: path tracing, the reference; often better in open
-    /// scenes. `auto`: measures both in each tile of 16 x 16 pixels, gives more time to the one that needs less of it
-    /// for the same noise, and weights them by their variances; as it measures time, two such renders differ in their
-    /// noise. All converge to the same picture.
+    /// scenes. `auto`: measures both in each tile of 16 x 16 pixels, spends more time on the more efficient one, and
+    /// weights them by their variances; as it measures time, two such renders differ in their noise. All converge to
+    /// the same picture.
     #[arg(id = "physical.integrator", long = "integrator", value_name = "NAME", value_parser = ["lightcuts", "path", "auto"])]
     integrator: Option<String>,
     /// Stop after this time, such as 10s, 2m or 1.5h; 0 for no limit [default: 0]
     ///
-    /// Rendering is over then, however large the picture: pixels that got no sample in time show the nearest one that has.
-    /// Reading the scene and writing files come on top. The number of samples is not limited unless --samples is given.
+    /// Rendering stops then, at any picture size; unsampled pixels copy the nearest sampled one. Reading the scene and
+    /// writing files come on top. The number of samples is not limited unless --samples is given.
     #[arg(id = "physical.time-limit", long = "time-limit", value_name = "TIME")]
     time_limit: Option<Seconds>,
     /// Stop when the estimated relative RMS error of the pixels falls below this, such as 0.02; 0 for never [default:
@@ -56,7 +56,7 @@ pub(crate) struct PhysicalFlags {
     rejection: Option<bool>,
     /// Factor on the lights of a thesis scene [default: 1]
     ///
-    /// Those lights have no falloff. They get intensities with which a surface at half the scene's diagonal is as
+    /// Those lights have no falloff. Each gets the intensity that makes a surface half the scene's diagonal away as
     /// bright as in the thesis' model.
     #[arg(id = "physical.light-scale", long = "light-scale", value_name = "X")]
     light_scale: Option<f32>,

@@ -44,7 +44,7 @@ pub(crate) struct ImageFlags {
     /// Width and height, such as 640x480
     ///
     /// In the thesis' model neither the number nor the brightness of VPLs depends on the size: their probability is
-    /// divided among the camera rays. A wide picture places some of them in what it shows beyond a square one.
+    /// divided among the camera rays. A wide picture places some of them in the extra area at its sides.
     #[arg(long, value_name = "WxH", conflicts_with_all = ["image.width", "image.height"])]
     size: Option<Size>,
     /// Width in pixels [default: 512]
@@ -89,7 +89,7 @@ pub(crate) struct SamplingFlags {
     ///
     /// The time is proportional to it. In the thesis' model 4 to 16 make smooth edges, and the number of VPLs stays the
     /// same: their probability is divided among the camera rays. In the physical model more samples mean less noise:
-    /// four times as many halve it. There 0 is no limit, with --time-limit or --noise, and the default with them.
+    /// four times as many halve it. With --time-limit or --noise the default is 0: no limit.
     #[arg(id = "sampling.samples", long = "samples", short = 's', value_name = "N")]
     samples: Option<u32>,
     /// Samples of pixels that differ from a neighbour; used if higher than --samples [default: 0]

@@ -112,7 +112,7 @@ impl Origins {
         (pdf > 0.0).then(|| self.arrive(-towards, environment_radiance(map, towards) / pdf, place))
     }
 
-    /// Parallel light of some irradiance through a disk that covers the scene.
+    /// Directional light of some irradiance through a disk that covers the scene.
     fn arrive(&self, direction: Vec3, irradiance: Vec3, place: [f32; 2]) -> Departure {
         let (tangent, bitangent) = frame(direction);
         let (sin, cos) = sin_cos_turns(place[1]);
@@ -134,7 +134,7 @@ fn around(axis: Vec3, cos: f32, turn: f32) -> Vec3 {
     (tangent * (sin * c) + bitangent * (sin * s) + axis * cos).normalize_or_zero()
 }
 
-/// A place on a luminous surface, uniform, with the normal there and its coordinates along the edges.
+/// A place on an emissive surface, uniform, with the normal there and its coordinates along the edges.
 fn surface_place(emitter: &Emitter, random: [f32; 2]) -> (Vec3, Vec3, [f32; 2]) {
     match emitter.kind {
         SPHERE_LIGHT => {

@@ -78,7 +78,7 @@ impl Known {
         Self { spread: self.spread + other.spread, freedom: self.freedom + other.freedom }
     }
 
-    /// Variance of a sample, where that of the whole picture has a say.
+    /// Variance of a sample, shrunk towards the picture's variance.
     fn variance(&self, all: &Self) -> Option<f64> {
         let mean = all.spread / all.freedom;
         let variance = (self.spread + mean * PICTURE_FREEDOM) / (self.freedom + PICTURE_FREEDOM);
@@ -162,12 +162,12 @@ impl Mixture {
         }
     }
 
-    /// Takes stock of what the light of each pixel is.
+    /// Updates the reference brightness of each pixel.
     pub(crate) fn learn_light(&mut self) {
         self.references = Arc::new(self.smooth_light());
     }
 
-    /// Takes stock of how much techniques vary, after probes.
+    /// Updates the variances of the techniques, after probes.
     pub(crate) fn learn_variances(&mut self) {
         let dark = self.dark();
         let variances = self.canvases.iter().map(|canvas| self.tile_variances(canvas.as_ref(), dark));

@@ -1,4 +1,4 @@
-//! Lights made flat: those of the scene, and every luminous primitive.
+//! Lights made flat: those of the scene, and every emissive primitive.
 
 use crate::shapes::Builder;
 use bytemuck::Zeroable;

@@ -1,4 +1,4 @@
-//! Images made into half floats of linear light, with their smaller copies.
+//! Images made into half floats of linear light, with their mip levels.
 
 use half::f16;
 use lightcuts_kernel::mip::MipImage;

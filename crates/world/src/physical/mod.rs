@@ -42,7 +42,7 @@ pub struct PhysicalWorld {
     pub images: Vec<MipImage>,
     /// Pixels of all images.
     pub words: Vec<u32>,
-    /// Lights: first those that have a place, then parallel light.
+    /// Lights: first those that have a place, then directional light.
     pub emitters: Vec<Emitter>,
     /// Number of those that have a place.
     pub placed_emitters: u32,

@@ -6,7 +6,7 @@ fn object(shape: PhysicalShape, material: u32) -> PhysicalObject {
     PhysicalObject { name: String::new(), shape, material: SurfaceId(material), location: Location::default() }
 }
 
-/// A lit floor: a rectangle, a luminous instance of a mesh, twice, and a luminous sphere.
+/// A lit floor: a rectangle, an emissive instance of a mesh, twice, and an emissive sphere.
 fn scene() -> PhysicalScene {
     let light = EmissionDesc { radiance: Vec3::ONE, image: None, two_sided: false };
     let instance =
