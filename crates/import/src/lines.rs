@@ -128,9 +128,15 @@ impl<'a> Lines<'a> {
         while let [.., b'\n' | b'\r'] = self.raw[..] {
             self.raw.pop();
         }
+        if self.number == 1 && self.raw.starts_with(BYTE_ORDER_MARK) {
+            self.raw.drain(..BYTE_ORDER_MARK.len());
+        }
         Ok(count > 0)
     }
 }
+
+/// What some editors begin a text in UTF-8 with.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Whether a comment, in which a backslash means nothing, ends the line. A `#` within a word belongs to a name.
 pub(crate) fn ends_in_comment(line: &str) -> bool {

@@ -26,7 +26,10 @@ pub(crate) fn parse() -> Cli {
 /// The command line's declaration, with its model in the help of each option that belongs to one.
 pub(crate) fn command() -> Command {
     let after = format!("{LEGEND}\n\n{AFTER_HELP}");
-    Cli::command().mut_subcommand("render", |render| render.mut_args(marked).after_help(after))
+    let of_develop = "Transfer function of PNG values [default: srgb]";
+    Cli::command()
+        .mut_subcommand("render", |render| render.mut_args(marked).after_help(after))
+        .mut_subcommand("develop", |develop| develop.mut_arg("display.transfer", |arg| arg.help(of_develop)))
 }
 
 /// The scope of an option, whose id is its key in job files: `None` for those that concern no model.

@@ -112,6 +112,10 @@ impl<'a> Scene<'a> {
             if !self.world.has_masks || self.is_there(&ray, &hit) {
                 return Some(self.first_of_tied(&ray, hit));
             }
+            // What lies in the place of a hole is no farther away than the hole.
+            if let Some(behind) = self.first_behind(&ray, hit) {
+                return Some(behind);
+            }
             ray.t_min = hit.t;
         }
         None
@@ -181,8 +185,9 @@ impl<'a> Scene<'a> {
         let tangents = frame(normal);
         let wo = to_local(tangents, normal, toward);
         let epsilon = error.max(self.world.ties.slack(hit.primitive));
-        // A little back along the ray too: at an edge it keeps to its side of whatever else ends there.
-        let lift = face * epsilon.copysign(face.dot(toward)) + toward * (0.5 * epsilon);
+        // A little back along the ray too, by more than its end may be off: at an edge it keeps to its side of what else ends there.
+        let back = 0.5 * epsilon + (hit.t * APPROACH).min(8.0 * epsilon);
+        let lift = face * epsilon.copysign(face.dot(toward)) + toward * back;
         Interaction {
             point,
             face,

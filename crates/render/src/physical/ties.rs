@@ -1,4 +1,4 @@
-//! Which of several surfaces in one place is met; see [`lightcuts_world::physical::Ties`].
+//! Which of several surfaces in one place is met, where one of them shines or has holes; see [`lightcuts_world::physical::Ties`].
 
 use super::scene::Scene;
 use glam::Vec3;
@@ -25,9 +25,18 @@ impl Scene<'_> {
     }
 
     fn first_of(&self, ray: &Ray, hit: Hit, tied: &[Tied]) -> Hit {
-        let rank = |hit: &Hit| (!self.shines(ray, hit), hit.primitive);
         let tied = tied.iter().filter_map(|tied| self.meets(ray, &hit, tied));
-        tied.chain([hit]).min_by_key(rank).unwrap_or(hit)
+        tied.chain([hit]).min_by_key(|hit| self.rank(ray, hit)).unwrap_or(hit)
+    }
+
+    /// What is met in the place of a hole, if anything.
+    pub(super) fn first_behind(&self, ray: &Ray, hole: Hit) -> Option<Hit> {
+        let tied = self.world.ties.of(hole.primitive).iter().filter_map(|tied| self.meets(ray, &hole, tied));
+        tied.min_by_key(|hit| self.rank(ray, hit))
+    }
+
+    fn rank(&self, ray: &Ray, hit: &Hit) -> (bool, u32) {
+        (!self.shines(ray, hit), hit.primitive)
     }
 
     /// Whether light that leaves a place on an emitter in a direction is that emitter's, and of none in its place.

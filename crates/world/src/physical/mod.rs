@@ -54,7 +54,7 @@ pub struct PhysicalWorld {
     pub primitive_emitters: Vec<u32>,
     /// Light from infinitely far away.
     pub environment: Option<StoredEnvironment>,
-    /// Emissive surfaces in one place with others.
+    /// Surfaces that shine or have holes in one place with others.
     pub ties: Ties,
     /// The place in the scene that is this world's origin: all else is relative to it.
     pub origin: DVec3,

@@ -1,4 +1,4 @@
-//! Emissive surfaces that lie in one place with others: a lamp flush with the ceiling, the same face twice.
+//! Surfaces that shine or have holes and lie in one place with others: a lamp flush with the ceiling, the same face twice, a decal.
 //!
 //! Rounding alone would decide which of them a ray meets, while light that is drawn from an emitter stops short of all of them and
 //! so would count each. Both go by one rule, for which the ties are listed here: of surfaces in one place the first that shines
@@ -59,14 +59,14 @@ impl Ties {
         if self.tied.is_empty() { 0.0 } else { self.slacks[primitive as usize] }
     }
 
-    /// Finds the ties of emissive primitives; `emitters` has the light of each primitive, or [`NONE`].
-    fn find(shapes: &Shapes, emitters: &[u32]) -> Self {
+    /// Finds the ties of the primitives for which `is_asked`.
+    fn find(shapes: &Shapes, is_asked: impl Fn(usize) -> bool) -> Self {
         let mut pairs = Vec::new();
-        let emissive = |primitive: u32| emitters.get(primitive as usize).is_some_and(|&emitter| emitter != NONE);
+        let asked = |primitive: u32| (primitive as usize) < shapes.primitives.len() && is_asked(primitive as usize);
         let triangles = shapes.triangles.iter().flat_map(|block| (0..LANES).map(|lane| block.triangle(lane)));
-        let forms = triangles.filter(|triangle| emissive(triangle.primitive)).map(Form::triangle);
-        let forms = forms.chain(shapes.spheres.iter().filter(|sphere| emissive(sphere.primitive)).map(Form::sphere));
-        let forms = forms.chain(shapes.squares.iter().filter(|square| emissive(square.primitive)).map(Form::square));
+        let forms = triangles.filter(|triangle| asked(triangle.primitive)).map(Form::triangle);
+        let forms = forms.chain(shapes.spheres.iter().filter(|sphere| asked(sphere.primitive)).map(Form::sphere));
+        let forms = forms.chain(shapes.squares.iter().filter(|square| asked(square.primitive)).map(Form::square));
         for form in forms {
             visit(shapes, &form, |other| {
                 if other.primitive != form.primitive && form.is_in_place_of(&other) {
@@ -78,7 +78,7 @@ impl Ties {
         Self::listed(pairs, shapes.primitives.len())
     }
 
-    /// Lists by primitive; pairs of two emissive ones are there twice.
+    /// Lists by primitive; pairs of two that were asked for are there twice.
     fn listed(mut pairs: Vec<(u32, Tied, f64)>, primitives: usize) -> Self {
         if pairs.is_empty() {
             return Self::default();
@@ -105,7 +105,9 @@ impl Ties {
 impl PhysicalWorld {
     /// Moves the emission of tied emitters past what lies in their place.
     pub(super) fn settle_ties(&mut self) {
-        self.ties = Ties::find(&self.shapes, &self.primitive_emitters);
+        let Self { shapes, primitive_emitters, scatters, .. } = &*self;
+        let has_holes = |primitive: usize| scatters[shapes.primitives[primitive].material as usize].mask_image != NONE;
+        self.ties = Ties::find(shapes, |primitive| primitive_emitters[primitive] != NONE || has_holes(primitive));
         for emitter in self.emitters.iter_mut().filter(|emitter| emitter.primitive != NONE) {
             emitter.slack = emitter.slack.max(self.ties.slack(emitter.primitive));
         }

@@ -8,7 +8,10 @@ use crate::settings::{Integrator, Strategy};
 use glam::{DAffine3, DQuat, DVec3, EulerRot, Vec3};
 use lightcuts_kernel::rng::random4;
 use lightcuts_scene::Location;
-use lightcuts_scene::physical::{EnvironmentDesc, PhysicalCamera, PhysicalObject, PhysicalScene, PhysicalShape, View};
+use lightcuts_scene::physical::{
+    AlphaMask, EnvironmentDesc, ImageId, PhysicalCamera, PhysicalObject, PhysicalScene, PhysicalShape, PixelImage,
+    Pixels, SurfaceDesc, View,
+};
 
 const BOTH: [Integrator; 2] = [Integrator::Path, Integrator::Lightcuts];
 
@@ -250,6 +253,42 @@ fn a_sphere_that_is_there_twice_shines_once() {
         for integrator in BOTH {
             let seen = mean(&render(&scene(objects.clone()), &settings(integrator, 8, 64))).x;
             assert!((seen / exact - 1.0).abs() < 0.02, "{integrator:?}: {seen} of {exact}");
+        }
+    }
+}
+
+/// A decal with holes in one plane with a wall shows the wall where it has them, and itself elsewhere, in either order.
+#[test]
+fn holes_show_what_lies_in_their_place() {
+    let pixels = (0..16).map(|k| [200, 20, 20, if k % 4 < 2 { 255 } else { 0 }]).collect();
+    let mask = PixelImage { name: "half".to_owned(), width: 4, height: 4, pixels: Pixels::Srgb(pixels) };
+    let decal =
+        SurfaceDesc { alpha: Some(AlphaMask { image: ImageId(0), threshold: 0.5 }), ..matt(Vec3::new(0.8, 0.0, 0.0)) };
+    for k in 0..8 {
+        let center = Vec3::new(0.1, 0.2, -0.3) * k as f32;
+        let mut objects =
+            vec![rectangle(center, Vec3::Z, Vec3::Y, 1.0, 1.0, 0), rectangle(center, Vec3::Z, Vec3::Y, 4.0, 4.0, 1)];
+        let is_below = k % 2 == 1;
+        if is_below {
+            objects.reverse();
+        }
+        let scene = PhysicalScene {
+            camera: PhysicalCamera {
+                position: (center + Vec3::Z).as_dvec3(),
+                view: View::Orthographic { height: 0.8 },
+                ..PhysicalCamera::default()
+            },
+            objects,
+            images: vec![mask.clone()],
+            materials: vec![decal.clone(), matt(Vec3::new(0.0, 0.8, 0.0))],
+            environment: Some(sky(1.0)),
+            ..PhysicalScene::default()
+        };
+        let picture = render(&turned(&scene, k), &settings(Integrator::Path, 8, 4)).beauty;
+        for (n, &[red, green, _]) in picture.pixels().iter().enumerate() {
+            let is_decal = n % 8 < 4 && !is_below;
+            let (seen, hidden) = if is_decal { (red, green) } else { (green, red) };
+            assert!(seen > 0.5 && hidden == 0.0, "{k}, pixel {n}: {red} {green}");
         }
     }
 }
