@@ -1,9 +1,9 @@
 //! Station 6: the picture that a render's sums make, and how far it may be from the truth.
 
 use super::mixture::{Canvas, MOST_TECHNIQUES, Mixture};
-use super::pass::PixelSums;
 use super::rendering::PhysicalRendering;
 use super::sketch::{Glimpse, Sketch, Source};
+use super::sums::PixelSums;
 use crate::film::Film;
 use crate::stats::Stats;
 use bytemuck::Zeroable;

@@ -1,8 +1,8 @@
 //! Light straight from the scene's lights: one of them is drawn, and weighed against meeting it by chance.
 
 use super::caustics::{is_focused, spreads};
-use super::pass::Counts;
 use super::scene::{Interaction, Scene};
+use super::sums::Counts;
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{GLOSSY, MATT, lobes_of};
 use lightcuts_kernel::emitter::{Emitter, RECTANGLE_LIGHT, SPHERE_LIGHT, TRIANGLE_LIGHT, emitter_pdf, sample_emitter};

@@ -2,8 +2,8 @@
 
 use super::bundle::Fineness;
 use super::cluster_tree::ClusterTree;
-use super::pass::Counts;
 use super::scene::{Interaction, Scene};
+use super::sums::Counts;
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{GLOSSY, MATT, Transport};
 use lightcuts_kernel::cluster::{

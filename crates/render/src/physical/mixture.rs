@@ -4,7 +4,9 @@
 //! the samples that it weighs, a rare bright sample would lower its own weight, and pictures would be too dark. So variances come
 //! from probes, samples of a few pixels that are not shown.
 
-use super::pass::{Extent, Moments, PROBES_OF_A_GROUP, PixelSums, SampledTile, Task, probed};
+use super::pass::SampledTile;
+use super::sums::{Moments, PixelSums};
+use super::task::{Extent, PROBES_OF_A_GROUP, Task, probed};
 use crate::film::{Film, Tile};
 use rayon::prelude::*;
 use std::sync::Arc;

@@ -21,6 +21,8 @@ mod rejection;
 mod rendering;
 mod scene;
 mod sketch;
+mod sums;
+mod task;
 mod technique;
 #[cfg(test)]
 mod tests;

@@ -4,210 +4,18 @@ use super::caustics::CausticMap;
 use super::lightcuts::Lightcuts;
 use super::path::Radiance;
 use super::randoms::Randoms;
-use super::scene::{Cone, Interaction, Scene};
+use super::scene::{Cone, Scene};
 use super::sketch::Glimpse;
+use super::sums::{Counts, FirstHit, Moments, PixelSums};
+use super::task::{Extent, Place, Points, Task, blocks, probed};
 use super::technique::Technique;
 use crate::film::{Film, Tile};
 use crate::settings::Filter;
-use bytemuck::Zeroable;
 use cpu_time::ThreadTime;
-use glam::Vec3;
-use lightcuts_kernel::bsdf::{CONDUCTOR, DIELECTRIC, MIRROR, PHONG};
-use lightcuts_kernel::cluster::light_power;
-use lightcuts_kernel::fresnel::fresnel_conductor;
 use lightcuts_kernel::lens::{Lens, lens_ray, pixel_spread, pixel_width};
 use lightcuts_kernel::ray::{Hit, Ray};
-use lightcuts_kernel::rng::random4;
 use lightcuts_world::bvh::LANES;
 use std::time::Instant;
-
-/// Rays by kind, and what was gathered.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Counts {
-    pub(crate) primary: u64,
-    pub(crate) bounces: u64,
-    pub(crate) shadow: u64,
-    /// Points that VPLs lit.
-    pub(crate) gathered: u64,
-    /// Clusters and VPLs in their cuts.
-    pub(crate) cut: u64,
-    /// Bounds that were computed for it.
-    pub(crate) bounds: u64,
-}
-
-impl Counts {
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.primary += other.primary;
-        self.bounces += other.bounces;
-        self.shadow += other.shadow;
-        self.gathered += other.gathered;
-        self.cut += other.cut;
-        self.bounds += other.bounds;
-    }
-}
-
-/// What a camera ray met first.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct FirstHit {
-    albedo: Vec3,
-    normal: Vec3,
-    position: Vec3,
-    depth: f32,
-    object: u32,
-    material: u32,
-}
-
-impl FirstHit {
-    pub(crate) fn new(at: &Interaction, ray: &Ray, distance: f32) -> Self {
-        let bsdf = &at.bsdf;
-        let albedo = match bsdf.kind {
-            PHONG => bsdf.diffuse + bsdf.specular,
-            CONDUCTOR => fresnel_conductor(1.0, bsdf.specular, bsdf.absorption),
-            DIELECTRIC | MIRROR => bsdf.specular,
-            _ => bsdf.diffuse,
-        };
-        let normal = if at.normal.dot(ray.direction) > 0.0 { -at.normal } else { at.normal };
-        Self { albedo, normal, position: at.point, depth: distance, object: at.object, material: at.material + 1 }
-    }
-}
-
-/// Sums over the samples of a pixel, of what is the same for all techniques. Zeros are a pixel without samples.
-#[derive(Debug, Clone, Copy, Default, Zeroable)]
-pub(crate) struct PixelSums {
-    pub(crate) samples: u32,
-    /// Samples that hit something.
-    pub(crate) hits: u32,
-    /// Of what was scattered at least once, as sums of channels.
-    pub(crate) reflected: f64,
-    /// Of what was not, as sums of channels.
-    pub(crate) emitted: f64,
-    pub(crate) albedo: Vec3,
-    pub(crate) normal: Vec3,
-    pub(crate) position: Vec3,
-    pub(crate) depth: f32,
-    /// Of the first sample that hit one, from 1; 0 for none.
-    pub(crate) object: u32,
-    pub(crate) material: u32,
-    /// Of the cuts: sizes, and bounds of their errors.
-    pub(crate) cut: f32,
-    pub(crate) bound: f32,
-    /// Samples that have a cut, and what was scattered at least once of them.
-    pub(crate) cuts: u32,
-    pub(crate) gathered: f64,
-}
-
-impl PixelSums {
-    /// Of a single sample by a technique.
-    fn of(sampled: &Sampled, technique: Technique) -> Self {
-        let Sampled { radiance, first, cut, bound } = *sampled;
-        let emitted = f64::from(light_power(radiance.emitted));
-        let reflected = f64::from(light_power(radiance.all)) - emitted;
-        let cuts = u32::from(technique.uses_vpls());
-        let gathered = f64::from(cuts) * reflected;
-        let mut sums = Self { samples: 1, reflected, emitted, cut, bound, cuts, gathered, ..Self::default() };
-        if let Some(first) = &first {
-            sums.see(first);
-        }
-        sums
-    }
-
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.samples += other.samples;
-        self.hits += other.hits;
-        self.reflected += other.reflected;
-        self.emitted += other.emitted;
-        self.albedo += other.albedo;
-        self.normal += other.normal;
-        self.position += other.position;
-        self.depth += other.depth;
-        if self.object == 0 {
-            (self.object, self.material) = (other.object, other.material);
-        }
-        self.cut += other.cut;
-        self.bound += other.bound;
-        self.cuts += other.cuts;
-        self.gathered += other.gathered;
-    }
-
-    fn see(&mut self, first: &FirstHit) {
-        self.hits += 1;
-        self.albedo += first.albedo;
-        self.normal += first.normal;
-        self.position += first.position;
-        self.depth += first.depth;
-        if self.object == 0 {
-            (self.object, self.material) = (first.object, first.material);
-        }
-    }
-}
-
-/// Sums over the samples that a pixel got from one technique, of their brightness (r + g + b) / 3; of probes without light that
-/// was not scattered.
-#[derive(Debug, Clone, Copy, Default, Zeroable)]
-pub(crate) struct Moments {
-    pub(crate) samples: u32,
-    pub(crate) sum: f64,
-    pub(crate) sum_sq: f64,
-}
-
-impl Moments {
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.samples += other.samples;
-        self.sum += other.sum;
-        self.sum_sq += other.sum_sq;
-    }
-
-    pub(crate) fn mean(&self) -> f64 {
-        self.sum / f64::from(self.samples.max(1))
-    }
-
-    /// Sum of squared differences from the mean.
-    pub(crate) fn spread(&self) -> f64 {
-        (self.sum_sq - self.sum * self.mean()).max(0.0)
-    }
-
-    /// Variance of the mean, as if samples were independent; 0 with fewer than two.
-    pub(crate) fn variance_of_mean(&self) -> f64 {
-        let n = f64::from(self.samples);
-        if self.samples < 2 { 0.0 } else { self.spread() / (n * (n - 1.0)) }
-    }
-}
-
-/// What a tile is to get in a pass.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Task {
-    /// Number of the tile.
-    pub(crate) tile: usize,
-    /// Number of the technique.
-    pub(crate) technique: usize,
-    pub(crate) extent: Extent,
-}
-
-/// How many samples a tile gets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Extent {
-    /// So many of every pixel.
-    Whole(u32),
-    /// One of each of a few pixels, to learn how a technique does; with the number of the probe.
-    Probe(u32),
-}
-
-impl Extent {
-    /// Samples of every pixel.
-    pub(crate) fn samples(self) -> u32 {
-        match self {
-            Self::Whole(samples) => samples,
-            Self::Probe(_) => 0,
-        }
-    }
-}
-
-/// Parts of a tile, side by side, of each of which a probe sees a square of two by two pixels: neighbours, as techniques are
-/// quickest with them.
-const PROBED_PARTS: u32 = 2;
-
-/// Probes of the same pixels, so that their samples can be compared; the next ones see others.
-pub(crate) const PROBES_OF_A_GROUP: u32 = 4;
 
 /// What a pass is: everything that its samples share.
 pub(crate) struct SamplePass<'a> {
@@ -218,16 +26,6 @@ pub(crate) struct SamplePass<'a> {
     /// Photons, if they are to bring caustics.
     pub(crate) caustics: Option<CausticMap>,
 }
-
-/// Which random numbers a task gets: those of samples from a number on, in a stream.
-#[derive(Clone, Copy)]
-pub(crate) struct Points {
-    pub(crate) first: u32,
-    pub(crate) stream: u32,
-}
-
-/// A pixel of a tile: its place there, and its column and row in the picture.
-type Place = (usize, (u32, u32));
 
 /// What a task yields.
 pub(crate) struct SampledTile {
@@ -369,34 +167,6 @@ impl SampledTile {
         self.moments[k].add(&Moments { samples: 1, sum: brightness, sum_sq: brightness * brightness });
         self.pixels[k].add(&sums);
     }
-}
-
-/// A tile's pixels in blocks of up to eight neighbours, each with its place in the tile.
-fn blocks(tile: &Tile) -> impl Iterator<Item = Vec<Place>> {
-    const SIZE: [u32; 2] = [4, 2];
-    let Tile { i, j, width, height } = *tile;
-    let corners = (0..height)
-        .step_by(SIZE[1] as usize)
-        .flat_map(move |y| (0..width).step_by(SIZE[0] as usize).map(move |x| (x, y)));
-    corners.map(move |(left, bottom)| {
-        let rows = bottom..(bottom + SIZE[1]).min(height);
-        let columns = left..(left + SIZE[0]).min(width);
-        rows.flat_map(|y| columns.clone().map(move |x| ((y * width + x) as usize, (i + x, j + y)))).collect()
-    })
-}
-
-/// The pixels of a probe, each with its place in the tile.
-pub(crate) fn probed(tile: &Tile, number: u32) -> impl Iterator<Item = Place> {
-    let Tile { i, j, width, height } = *tile;
-    (0..PROBED_PARTS).flat_map(move |part| {
-        let [u, v, ..] = random4(part, number / PROBES_OF_A_GROUP, i, j);
-        let (first, end) = (width * part / PROBED_PARTS, width * (part + 1) / PROBED_PARTS);
-        let place = |places: u32, random: f32| (places.saturating_sub(1) as f32 * random) as u32;
-        let (left, bottom) = (first + place(end - first, u), place(height, v));
-        let rows = bottom..(bottom + 2).min(height);
-        let columns = left..(left + 2).min(end);
-        rows.flat_map(move |y| columns.clone().map(move |x| ((y * width + x) as usize, (i + x, j + y))))
-    })
 }
 
 /// A clock of the thread's own time, which other threads and programs do not stretch.

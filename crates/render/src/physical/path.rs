@@ -2,8 +2,9 @@
 //! (Veach 1997).
 
 use super::direct::{Before, DirectLight};
-use super::pass::{Counts, FirstHit, SamplePass, Start};
+use super::pass::{SamplePass, Start};
 use super::scene::{Cone, Interaction};
+use super::sums::{Counts, FirstHit};
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{ALL_LOBES, SPECULAR, Transport};
 

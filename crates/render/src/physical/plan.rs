@@ -5,7 +5,8 @@
 //! pixels of every tile now and then, so that the choice can change.
 
 use super::mixture::Mixture;
-use super::pass::{Extent, SampledTile, Task};
+use super::pass::SampledTile;
+use super::task::{Extent, Task};
 use super::technique::Technique;
 
 /// Probes before the first choice.

@@ -6,9 +6,9 @@
 
 use super::gather::Receiver;
 use super::lightcuts::gathered_lobes;
-use super::pass::Counts;
 use super::randoms::Randoms;
 use super::scene::{Cone, Interaction, Scene};
+use super::sums::Counts;
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{ALL_LOBES, MATT, SPECULAR, Transport};
 use lightcuts_kernel::cluster::light_power;

@@ -3,7 +3,8 @@
 //! It tells cuts what pixels are about as bright as. And where the first pass is broken off, by a person or for want of time, the
 //! pixels that it left are those of the sketch: the picture is coarser there, but whole.
 
-use super::pass::{PixelSums, SamplePass};
+use super::pass::SamplePass;
+use super::sums::PixelSums;
 use bytemuck::Zeroable;
 use glam::Vec3;
 use rayon::prelude::*;

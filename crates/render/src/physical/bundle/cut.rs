@@ -9,7 +9,7 @@ use super::{Bundle, gathered};
 use crate::cpu::Lanes;
 use crate::physical::cluster_tree::ClusterTree;
 use crate::physical::gather::{Gathered, representative_of};
-use crate::physical::pass::Counts;
+use crate::physical::sums::Counts;
 use lightcuts_kernel::cluster::{LIGHT_CHILD, light_power};
 use lightcuts_world::bvh::LANES;
 use std::collections::BinaryHeap;

@@ -3,7 +3,7 @@
 use super::Bundle;
 use super::vectors::{Wide3, add, divided, dot, loaded, product, scaled, splat3, stored, sub};
 use crate::cpu::{Lanes, RayLanes};
-use crate::physical::pass::Counts;
+use crate::physical::sums::Counts;
 use glam::Vec3;
 use lightcuts_kernel::ray::NONE;
 use lightcuts_kernel::rounding::{APPROACH, REACH};

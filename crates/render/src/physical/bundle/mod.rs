@@ -12,8 +12,8 @@ pub(crate) use cut::{Clusters, Cutting, Fineness};
 
 use super::cluster_tree::ClusterTree;
 use super::gather::{Gathered, Receiver};
-use super::pass::Counts;
 use super::scene::Interaction;
+use super::sums::Counts;
 use crate::cpu::{Lanes, Plain};
 use glam::Vec3;
 use lightcuts_kernel::bsdf::LAMBERT;
