@@ -2,11 +2,10 @@
 
 use super::caustics::CausticMap;
 use super::lightcuts::Lightcuts;
-use super::path::Radiance;
 use super::randoms::Randoms;
 use super::scene::{Cone, Scene};
 use super::sketch::Glimpse;
-use super::sums::{Counts, FirstHit, Moments, PixelSums};
+use super::sums::{Counts, Moments, PixelSums, Sampled};
 use super::task::{Extent, Place, Points, Task, blocks, probed};
 use super::technique::Technique;
 use crate::film::{Film, Tile};
@@ -50,14 +49,6 @@ pub(crate) struct Start {
     /// What the ray hits.
     pub(crate) hit: Option<Hit>,
     pub(crate) randoms: Randoms,
-}
-
-/// What a camera ray brings.
-pub(crate) struct Sampled {
-    pub(crate) radiance: Radiance,
-    pub(crate) first: Option<FirstHit>,
-    pub(crate) cut: f32,
-    pub(crate) bound: f32,
 }
 
 impl SamplePass<'_> {
@@ -119,7 +110,7 @@ impl SamplePass<'_> {
         let numbered = pixels.iter().map(|&place| (place, 0));
         let (sampled, _) = self.take(numbered, Technique::Path, stream, &mut Counts::default());
         let glimpse = |sampled: &Sampled| Glimpse {
-            sums: PixelSums::of(sampled, Technique::Path),
+            sums: PixelSums::of(sampled, false),
             all: sampled.radiance.all,
             indirect: sampled.radiance.indirect,
         };
@@ -160,7 +151,7 @@ impl SampledTile {
     fn add(&mut self, k: usize, (i, j): (u32, u32), shift: [f32; 2], sampled: &Sampled, technique: Technique) {
         self.all.add(i, j, shift, sampled.radiance.all);
         self.indirect.add(i, j, shift, sampled.radiance.indirect);
-        let sums = PixelSums::of(sampled, technique);
+        let sums = PixelSums::of(sampled, technique.uses_vpls());
         // Lights in the picture are the same to all techniques, and pixels on their edges vary more than all others.
         let is_probe = self.task.extent.samples() == 0;
         let brightness = if is_probe { sums.reflected } else { sums.reflected + sums.emitted } / 3.0;

@@ -4,7 +4,7 @@
 use super::direct::{Before, DirectLight};
 use super::pass::{SamplePass, Start};
 use super::scene::{Cone, Interaction};
-use super::sums::{Counts, FirstHit};
+use super::sums::{Counts, FirstHit, Radiance};
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{ALL_LOBES, SPECULAR, Transport};
 
@@ -65,28 +65,4 @@ pub(crate) fn trace_path(pass: &SamplePass<'_>, start: Start, counts: &mut Count
         counts.bounces += 1;
     }
     (sum, first)
-}
-
-/// Radiance, and parts of it.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Radiance {
-    pub(crate) all: Vec3,
-    /// The part that was scattered at least twice.
-    pub(crate) indirect: Vec3,
-    /// The part that was not scattered at all.
-    pub(crate) emitted: Vec3,
-}
-
-impl Radiance {
-    /// Adds light that met so many surfaces on its way.
-    pub(crate) fn add(&mut self, surfaces: u32, light: Vec3) {
-        if light.is_finite() {
-            self.all += light;
-            match surfaces {
-                0 => self.emitted += light,
-                1 => {}
-                _ => self.indirect += light,
-            }
-        }
-    }
 }

@@ -1,8 +1,6 @@
 //! What the samples of a pass are counted and added up to.
 
-use super::pass::Sampled;
 use super::scene::Interaction;
-use super::technique::Technique;
 use bytemuck::Zeroable;
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{CONDUCTOR, DIELECTRIC, MIRROR, PHONG};
@@ -60,6 +58,38 @@ impl FirstHit {
     }
 }
 
+/// Radiance, and parts of it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Radiance {
+    pub(crate) all: Vec3,
+    /// The part that was scattered at least twice.
+    pub(crate) indirect: Vec3,
+    /// The part that was not scattered at all.
+    pub(crate) emitted: Vec3,
+}
+
+impl Radiance {
+    /// Adds light that met so many surfaces on its way.
+    pub(crate) fn add(&mut self, surfaces: u32, light: Vec3) {
+        if light.is_finite() {
+            self.all += light;
+            match surfaces {
+                0 => self.emitted += light,
+                1 => {}
+                _ => self.indirect += light,
+            }
+        }
+    }
+}
+
+/// What a camera ray brings.
+pub(crate) struct Sampled {
+    pub(crate) radiance: Radiance,
+    pub(crate) first: Option<FirstHit>,
+    pub(crate) cut: f32,
+    pub(crate) bound: f32,
+}
+
 /// Sums over the samples of a pixel, of what is the same for all techniques. Zeros are a pixel without samples.
 #[derive(Debug, Clone, Copy, Default, Zeroable)]
 pub(crate) struct PixelSums {
@@ -86,12 +116,12 @@ pub(crate) struct PixelSums {
 }
 
 impl PixelSums {
-    /// Of a single sample by a technique.
-    pub(super) fn of(sampled: &Sampled, technique: Technique) -> Self {
+    /// Of a single sample; `has_cut` if VPLs lit it.
+    pub(super) fn of(sampled: &Sampled, has_cut: bool) -> Self {
         let Sampled { radiance, first, cut, bound } = *sampled;
         let emitted = f64::from(light_power(radiance.emitted));
         let reflected = f64::from(light_power(radiance.all)) - emitted;
-        let cuts = u32::from(technique.uses_vpls());
+        let cuts = u32::from(has_cut);
         let gathered = f64::from(cuts) * reflected;
         let mut sums = Self { samples: 1, reflected, emitted, cut, bound, cuts, gathered, ..Self::default() };
         if let Some(first) = &first {

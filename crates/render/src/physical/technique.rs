@@ -1,9 +1,9 @@
 //! The ways to find light, behind one function.
 
 use super::lightcuts::Pending;
-use super::pass::{SamplePass, Sampled, Start};
+use super::pass::{SamplePass, Start};
 use super::path::trace_path;
-use super::sums::Counts;
+use super::sums::{Counts, Sampled};
 use crate::settings::{Integrator, Settings, Strategy};
 
 /// A way to find light.
