@@ -115,7 +115,12 @@ fn measure(world: &PhysicalWorld, size: u32, vpls: u32) -> Result<Row> {
         ensure!(all.stats.vpl_count == stats.vpl_count, "one seed gave two sets of VPLs");
         let (pixel_s, whole_s) = (pixel_s(all), all.stats.total_cpu_s);
         let error = relative_rmse(&all.beauty, &cut.beauty);
-        Ok(Compared { pixel_s, whole_s, error, indirect_error: relative_rmse(&all.indirect, &cut.indirect) })
+        Ok(Compared {
+            pixel_s,
+            whole_s,
+            error,
+            indirect_error: relative_rmse(&all.aovs().indirect, &cut.aovs().indirect),
+        })
     };
     Ok(Row {
         wanted: vpls,

@@ -146,7 +146,7 @@ fn remarks(is_complete: bool) -> Vec<(&'static str, &'static str)> {
 
 fn write_exr(path: &Path, picture: &mut Picture, job: &Job, is_complete: bool) -> Result<(), Failure> {
     let text = job_text(job, path)?;
-    let layers = &mut picture.layers;
+    let layers = picture.layers();
     for (name, value) in remarks(is_complete).into_iter().chain([(JOB_ATTRIBUTE, text.as_str())]) {
         layers.set_attribute(name, value).map_err(Failure::output)?;
     }

@@ -35,7 +35,7 @@ mod vpl_csv;
 pub use cpu::Simd;
 pub use lightcuts_kernel::light::Vpl;
 pub use monitor::{Monitor, Stage, Unwatched};
-pub use physical::{PhysicalRendering, render_physical};
+pub use physical::{Aovs, PhysicalRendering, render_physical};
 pub use rendering::Rendering;
 pub use settings::{
     AmbientOcclusion, Bloom, Caustics, Display, Filter, FilterKind, Gather, ImageSize, Integrator, Model, Physical,

@@ -1,15 +1,15 @@
 //! Station 6: the picture that a render's sums make, and how far it may be from the truth.
 
 use super::mixture::{Canvas, MOST_TECHNIQUES, Mixture};
-use super::rendering::PhysicalRendering;
+use super::rendering::Aovs;
 use super::sketch::{Glimpse, Sketch, Source};
 use super::sums::PixelSums;
 use crate::film::Film;
-use crate::stats::Stats;
 use bytemuck::Zeroable;
 use glam::{DVec3, Vec3};
-use lightcuts_image::Plane;
+use lightcuts_image::{Image, Plane};
 use rayon::prelude::*;
+use rayon::slice::ChunksMut;
 
 /// Pixels of which an error is estimated, about, where nothing hangs on it but a figure.
 const JUDGED_PIXELS: usize = 1 << 20;
@@ -28,7 +28,40 @@ struct Darkroom<'a> {
     dark: f64,
     /// What pixels without samples show, and where it is, bottom row first.
     sketch: Option<&'a Sketch>,
-    sources: Vec<Option<Source>>,
+    sources: Option<Sources>,
+}
+
+/// What is nearest to the pixels without samples: the same throughout a block.
+struct Sources {
+    /// Edge of a block in pixels, and blocks in a row.
+    block: usize,
+    columns: usize,
+    /// Bottom row first.
+    nearest: Vec<Option<Source>>,
+}
+
+impl Sources {
+    fn new(sketch: &Sketch, width: usize, height: usize) -> Self {
+        let block = sketch.block();
+        let columns = width.div_ceil(block);
+        let mut nearest: Vec<Option<Source>> = vec![None; columns * height.div_ceil(block)];
+        nearest.par_chunks_mut(columns).enumerate().for_each(|(row, sources)| {
+            let of = |column: usize| sketch.nearest(column * block, row * block);
+            sources.iter_mut().enumerate().for_each(|(column, source)| *source = of(column));
+        });
+        Self { block, columns, nearest }
+    }
+
+    fn of(&self, i: usize, j: usize) -> Option<Source> {
+        *self.nearest.get(j / self.block * self.columns + i / self.block)?
+    }
+}
+
+/// What the films of a picture tell, beside its beauty.
+struct Light {
+    direct: Image,
+    indirect: Image,
+    variance: Plane<f32>,
 }
 
 /// Sums over pixels: squares of their errors, as far as they are known.
@@ -66,41 +99,57 @@ impl Mixture {
     pub(crate) fn about_noise(&self) -> Option<f64> {
         Darkroom::new(self, None).noise((self.width * self.height).div_ceil(JUDGED_PIXELS))
     }
+}
 
-    /// The picture. Pixels without samples show the sketch; `origin` is where the world lies in the scene.
-    pub(crate) fn develop(mut self, sketch: Option<&Sketch>, stats: Stats, origin: DVec3) -> PhysicalRendering {
-        let room = Darkroom::new(&self, sketch);
-        let beauty = room.plane(|i, j| room.color(i, j, |canvas| &canvas.all, |glimpse| glimpse.all).to_array());
-        let indirect =
-            room.plane(|i, j| room.color(i, j, |canvas| &canvas.indirect, |glimpse| glimpse.indirect).to_array());
-        let top = self.height - 1;
-        let direct = room.plane(|i, j| {
-            let (all, indirect) = (beauty.get(i, top - j), indirect.get(i, top - j));
-            std::array::from_fn(|c| all[c] - indirect[c])
-        });
-        let variance = room.plane(|i, j| room.variance(i, j).unwrap_or(0.0) as f32);
-        // What is not needed any more makes room for the rest.
-        let Darkroom { weights, sources, .. } = room;
-        self.canvases.clear();
-        let room = Darkroom { mixture: &self, weights, dark: 0.0, sketch, sources };
-        let over = |sum: Vec3, count: u32| if count == 0 { [0.0; 3] } else { (sum / count as f32).to_array() };
-        let mean = |sum: f32, count: u32| if count == 0 { 0.0 } else { sum / count as f32 };
-        PhysicalRendering {
-            beauty,
-            direct,
-            indirect,
-            albedo: room.of_sums(|p| over(p.albedo, p.samples)),
-            normal: room.of_sums(|p| over(p.normal, p.hits)),
-            position: room.of_sums(|p| in_scene(p, origin)),
-            depth: room.of_sums(|p| if p.hits == 0 { f32::INFINITY } else { p.depth / p.hits as f32 }),
-            object_id: room.of_sums(|p| p.object),
-            material_id: room.of_sums(|p| p.material),
-            samples: room.plane(|i, j| room.samples(i, j) as f32),
-            variance,
-            cut_size: room.of_sums(|p| mean(p.cut, p.cuts)),
-            error_bound: room.of_sums(|p| mean(p.bound, p.cuts)),
-            stats,
+/// What a render leaves: all that its picture is made of.
+pub(super) struct Undeveloped {
+    pub(super) mixture: Mixture,
+    /// What pixels without samples show.
+    pub(super) sketch: Option<Sketch>,
+    /// Where the world lies in the scene.
+    pub(super) origin: DVec3,
+}
+
+impl Undeveloped {
+    fn room(&self) -> Darkroom<'_> {
+        Darkroom::new(&self.mixture, self.sketch.as_ref())
+    }
+
+    pub(super) fn beauty(&self) -> Image {
+        let room = self.room();
+        room.plane(|i, j| room.color(i, j, |canvas| &canvas.all, |glimpse| glimpse.all).to_array())
+    }
+
+    /// The rest of the picture, beside its beauty.
+    pub(super) fn aovs(&self, beauty: &Image) -> Aovs {
+        let room = self.room();
+        room.seen(room.light(beauty), self.origin)
+    }
+
+    /// The same; what is not needed any more makes room on the way.
+    pub(super) fn into_aovs(mut self, beauty: &Image) -> Aovs {
+        let room = self.room();
+        let light = room.light(beauty);
+        let Darkroom { weights, dark, sources, .. } = room;
+        self.mixture.canvases.clear();
+        let room = Darkroom { mixture: &self.mixture, weights, dark, sketch: self.sketch.as_ref(), sources };
+        room.seen(light, self.origin)
+    }
+
+    /// Mean number of samples of a pixel, and pixels without any.
+    pub(super) fn samples(&self) -> (f64, u64) {
+        let mixture = &self.mixture;
+        let shown =
+            |tile: usize| (0..mixture.canvases.len()).map(|technique| mixture.shown(technique, tile)).sum::<u32>();
+        let is_unsampled = |&(i, j): &(usize, usize)| shown(mixture.tile_of(i, j)) == 0;
+        let sketched = self.sketch.iter().flat_map(Sketch::pixels).filter(is_unsampled).count() as u64;
+        let (mut samples, mut unsampled) = (sketched, 0);
+        for (number, tile) in mixture.tiles().iter().enumerate() {
+            let (of_each, pixels) = (u64::from(shown(number)), u64::from(tile.width * tile.height));
+            samples += of_each * pixels;
+            unsampled += if of_each == 0 { pixels } else { 0 };
         }
+        (samples as f64 / (mixture.width * mixture.height) as f64, unsampled - sketched)
     }
 }
 
@@ -115,16 +164,8 @@ impl<'a> Darkroom<'a> {
         let weights_of =
             |tile| Some(mixture.weights(tile)).filter(|weights| weights.iter().any(|&weight| weight > 0.0));
         let weights = (0..mixture.tiles().len()).map(weights_of).collect();
-        let mut room = Self { mixture, weights, dark: mixture.dark(), sketch, sources: Vec::new() };
-        if let Some(sketch) = sketch {
-            let mut sources: Vec<Option<Source>> = vec![None; mixture.width * mixture.height];
-            sources.par_chunks_mut(mixture.width).enumerate().for_each(|(j, row)| {
-                let unsampled = row.iter_mut().enumerate().filter(|(i, _)| room.weights(*i, j).is_none());
-                unsampled.for_each(|(i, source)| *source = sketch.nearest(i, j));
-            });
-            room.sources = sources;
-        }
-        room
+        let sources = sketch.map(|sketch| Sources::new(sketch, mixture.width, mixture.height));
+        Self { mixture, weights, dark: mixture.dark(), sketch, sources }
     }
 
     fn weights(&self, i: usize, j: usize) -> Option<&[f64; MOST_TECHNIQUES]> {
@@ -143,7 +184,7 @@ impl<'a> Darkroom<'a> {
     }
 
     fn source(&self, i: usize, j: usize) -> Option<Source> {
-        *self.sources.get(j * self.mixture.width + i)?
+        self.sources.as_ref()?.of(i, j)
     }
 
     fn glimpse(&self, i: usize, j: usize) -> Option<&Glimpse> {
@@ -213,18 +254,85 @@ impl<'a> Darkroom<'a> {
         (count > 0).then(|| ((known + unknown * of_sample / count as f64) / all as f64).sqrt())
     }
 
-    fn of_sums<T: Copy + Send + Zeroable>(&self, value: impl Fn(&PixelSums) -> T + Sync) -> Plane<T> {
-        self.plane(|i, j| value(self.sums(i, j)))
+    fn light(&self, beauty: &Image) -> Light {
+        let indirect =
+            self.plane(|i, j| self.color(i, j, |canvas| &canvas.indirect, |glimpse| glimpse.indirect).to_array());
+        let top = self.mixture.height - 1;
+        let direct = self.plane(|i, j| {
+            let (all, indirect) = (beauty.get(i, top - j), indirect.get(i, top - j));
+            std::array::from_fn(|c| all[c] - indirect[c])
+        });
+        let variance = self.plane(|i, j| self.variance(i, j).unwrap_or(0.0) as f32);
+        Light { direct, indirect, variance }
+    }
+
+    /// Adds the planes of what samples saw, all in one go: to look a pixel up takes longer than to make something of it.
+    fn seen(&self, light: Light, origin: DVec3) -> Aovs {
+        let Mixture { width, height, .. } = *self.mixture;
+        let [mut albedo, mut normal, mut position] = std::array::from_fn(|_| zeros::<[f32; 3]>(width * height));
+        let [mut depth, mut samples, mut cut_size, mut error_bound] =
+            std::array::from_fn(|_| zeros::<f32>(width * height));
+        let [mut object_id, mut material_id] = std::array::from_fn(|_| zeros::<u32>(width * height));
+        let vectors = (rows(&mut albedo, width), rows(&mut normal, width), rows(&mut position, width)).into_par_iter();
+        let means =
+            (rows(&mut depth, width), rows(&mut cut_size, width), rows(&mut error_bound, width)).into_par_iter();
+        let counts =
+            (rows(&mut samples, width), rows(&mut object_id, width), rows(&mut material_id, width)).into_par_iter();
+        let over = |sum: Vec3, count: u32| if count == 0 { [0.0; 3] } else { (sum / count as f32).to_array() };
+        let mean = |sum: f32, count: u32| if count == 0 { 0.0 } else { sum / count as f32 };
+        vectors.zip(means).zip(counts).enumerate().for_each(|(y, ((vectors, means), counts))| {
+            let ((albedo, normal, position), (depth, cut_size, error_bound)) = (vectors, means);
+            let (samples, object, material) = counts;
+            let j = height - 1 - y;
+            for i in 0..width {
+                let sums = self.sums(i, j);
+                albedo[i] = over(sums.albedo, sums.samples);
+                normal[i] = over(sums.normal, sums.hits);
+                position[i] = in_scene(sums, origin);
+                depth[i] = if sums.hits == 0 { f32::INFINITY } else { sums.depth / sums.hits as f32 };
+                samples[i] = self.samples(i, j) as f32;
+                cut_size[i] = mean(sums.cut, sums.cuts);
+                error_bound[i] = mean(sums.bound, sums.cuts);
+                (object[i], material[i]) = (sums.object, sums.material);
+            }
+        });
+        Aovs {
+            albedo: self.whole(albedo),
+            normal: self.whole(normal),
+            position: self.whole(position),
+            depth: self.whole(depth),
+            samples: self.whole(samples),
+            cut_size: self.whole(cut_size),
+            error_bound: self.whole(error_bound),
+            object_id: self.whole(object_id),
+            material_id: self.whole(material_id),
+            direct: light.direct,
+            indirect: light.indirect,
+            variance: light.variance,
+        }
+    }
+
+    fn whole<T: Copy>(&self, pixels: Vec<T>) -> Plane<T> {
+        Plane::from_pixels(self.mixture.width, self.mixture.height, pixels).expect("a value for each pixel")
     }
 
     /// A picture from a function of (i, j), j from the bottom. All threads write it: most of the time goes into memory that is
     /// touched for the first time.
     fn plane<T: Copy + Send + Zeroable>(&self, value: impl Fn(usize, usize) -> T + Sync) -> Plane<T> {
         let Mixture { width, height, .. } = *self.mixture;
-        let mut pixels: Vec<T> = bytemuck::zeroed_vec(width * height);
-        pixels.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        let mut pixels: Vec<T> = zeros(width * height);
+        rows(&mut pixels, width).enumerate().for_each(|(y, row)| {
             row.iter_mut().enumerate().for_each(|(i, pixel)| *pixel = value(i, height - 1 - y));
         });
-        Plane::from_pixels(width, height, pixels).expect("a value for each pixel")
+        self.whole(pixels)
     }
+}
+
+/// Zeros of the system, which are touched by whoever writes them first.
+fn zeros<T: Zeroable>(count: usize) -> Vec<T> {
+    bytemuck::zeroed_vec(count)
+}
+
+fn rows<T: Send>(pixels: &mut [T], width: usize) -> ChunksMut<'_, T> {
+    pixels.par_chunks_mut(width)
 }

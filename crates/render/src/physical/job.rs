@@ -2,6 +2,7 @@
 
 use super::caustics::CausticMap;
 use super::cluster_tree::ClusterTree;
+use super::develop::Undeveloped;
 use super::emission::Origins;
 use super::in_order::in_order;
 use super::lightcuts::Lightcuts;
@@ -293,16 +294,14 @@ impl<'a> PhysicalJob<'a> {
         stats.tree.visits_per_hit = counts.bounds as f64 / counts.gathered.max(1) as f64;
         stats.devices =
             vec![StationDevice { station: "gather".to_owned(), kind: "cpu".to_owned(), name: processor_name() }];
+        let undeveloped = Undeveloped { mixture, sketch, origin };
         let mut passes = std::mem::take(&mut stats.passes);
-        let mut rendering = timed(&mut passes, Stage::Develop, || mixture.develop(sketch.as_ref(), stats, origin));
-        let pixels = rendering.samples.pixels();
-        let stats = &mut rendering.stats;
-        stats.samples_per_pixel = pixels.iter().map(|&samples| f64::from(samples)).sum::<f64>() / pixels.len() as f64;
-        stats.unsampled_pixels = pixels.iter().filter(|&&samples| samples == 0.0).count() as u64;
+        let beauty = timed(&mut passes, Stage::Develop, || undeveloped.beauty());
+        (stats.samples_per_pixel, stats.unsampled_pixels) = undeveloped.samples();
         stats.total_wall_s = passes.iter().map(|pass| pass.wall_s).sum();
         stats.total_cpu_s = passes.iter().map(|pass| pass.cpu_s).sum();
         stats.passes = passes;
-        rendering
+        PhysicalRendering::new(beauty, stats, undeveloped)
     }
 }
 

@@ -30,7 +30,7 @@ mod ties;
 mod vpls;
 mod watch;
 
-pub use rendering::PhysicalRendering;
+pub use rendering::{Aovs, PhysicalRendering};
 
 use crate::cpu::Simd;
 use crate::monitor::Monitor;

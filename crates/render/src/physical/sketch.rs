@@ -37,6 +37,13 @@ struct Level {
     seen: Vec<Glimpse>,
 }
 
+impl Level {
+    /// The pixel of a cell, by the cell's number.
+    fn pixel(&self, number: usize) -> (usize, usize) {
+        (number % self.columns * self.cell, number / self.columns * self.cell)
+    }
+}
+
 /// Where a glimpse is: one more than its cell's number in the lower bits, and its level in the upper ones. Pictures have fewer than 2^28
 /// pixels, and so a dozen levels at most.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -137,11 +144,23 @@ impl Sketch {
         (0..self.levels.len()).rev().find_map(of_level)
     }
 
+    /// Edge of the blocks that have one nearest source each: half a cell, where cells of all levels begin and end.
+    pub(crate) fn block(&self) -> usize {
+        self.levels.last().map_or(1, |level| (level.cell / 2).max(1))
+    }
+
+    /// The pixels that were seen.
+    pub(crate) fn pixels(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.levels.iter().flat_map(|level| {
+            let seen = level.seen.iter().enumerate().filter(|(_, glimpse)| glimpse.sums.samples > 0);
+            seen.map(|(number, _)| level.pixel(number))
+        })
+    }
+
     /// Whether a source is the pixel itself.
     pub(crate) fn is_at(&self, source: Source, i: usize, j: usize) -> bool {
         let (level, number) = source.place();
-        let Level { cell, columns, .. } = self.levels[level];
-        (number % columns * cell, number / columns * cell) == (i, j)
+        self.levels[level].pixel(number) == (i, j)
     }
 
     /// What the light of each pixel is, as a sum of channels, bottom row first: mean over its cell's neighbourhood, of reflected

@@ -32,7 +32,7 @@ fn every_pixel_agrees_with_path_tracing() {
                 |r: &PhysicalRendering, k: usize| f64::from(r.beauty.pixels()[k].iter().sum::<f32>()) / 3.0;
             let mut deviates: Vec<f64> = Vec::new();
             for k in 0..256 {
-                let variance = f64::from(reference.variance.pixels()[k] + rendering.variance.pixels()[k]);
+                let variance = f64::from(reference.aovs().variance.pixels()[k] + rendering.aovs().variance.pixels()[k]);
                 if variance > 0.0 {
                     deviates.push((brightness(&rendering, k) - brightness(&reference, k)) / variance.sqrt());
                 }

@@ -68,7 +68,7 @@ fn a_point_light_over_a_plane() {
         ..PhysicalScene::default()
     };
     let rendering = render(&scene, &settings(Integrator::Path, 33, 1));
-    for (found, at) in rendering.beauty.pixels().iter().zip(rendering.position.pixels()) {
+    for (found, at) in rendering.beauty.pixels().iter().zip(rendering.aovs().position.pixels()) {
         let to_light = Vec3::Y * 2.0 - Vec3::from(*at);
         let exact = 10.0 * to_light.normalize().y / to_light.length_squared() * 0.5 / PI;
         assert!((found[0] / exact - 1.0).abs() < 1e-4, "{found:?} {exact}");
@@ -103,7 +103,7 @@ fn a_mirrored_spot() {
         let to_light = Vec3::NEG_Y - Vec3::from(*at);
         10.0 * 0.9 * -to_light.normalize().y / to_light.length_squared() * 0.01 / PI
     };
-    let exact: f32 = rendering.position.pixels().iter().map(of).sum::<f32>() / 256.0;
+    let exact: f32 = rendering.aovs().position.pixels().iter().map(of).sum::<f32>() / 256.0;
     let ratio = mean(&rendering).x as f32 / exact;
     println!("without photons {:.4}, with them {ratio:.4} of {exact}", dark.x as f32 / exact);
     assert!(dark.x == 0.0 && (ratio - 1.0).abs() < 0.02, "{dark} {ratio}");

@@ -3,7 +3,7 @@
 use super::scenes::{caustic_room, render, room, settings};
 use crate::cpu::Simd;
 use crate::monitor::{Monitor, Stage};
-use crate::physical::{PhysicalRendering, render_physical};
+use crate::physical::{Aovs, PhysicalRendering, render_physical};
 use crate::settings::{Integrator, Settings, Strategy};
 use crate::stats::End;
 use lightcuts_scene::physical::PhysicalScene;
@@ -46,7 +46,8 @@ fn watched(scene: &PhysicalScene, settings: &Settings, monitor: &dyn Monitor) ->
 
 /// Every pixel of the room sees a wall: each layer has a value at each, whether it has a sample or not.
 fn assert_whole(rendering: &PhysicalRendering, what: &str) {
-    let PhysicalRendering { depth, normal, albedo, object_id, material_id, position, samples, stats, .. } = rendering;
+    let Aovs { depth, normal, albedo, object_id, material_id, position, samples, .. } = rendering.aovs();
+    let stats = &rendering.stats;
     for k in 0..depth.pixels().len() {
         let length = glam::Vec3::from(normal.pixels()[k]).length();
         assert!(depth.pixels()[k].is_finite() && (0.5..1.01).contains(&length), "{what} {k}");
