@@ -161,10 +161,14 @@ impl<'a> Scene<'a> {
         let surface = surface_at(&surfaces, ray, hit);
         let Plane { point, normal: face, tangent, texture_density, error } = self.plane(hit, &surface);
         let toward = -ray.direction;
-        let uv = self.texture_coordinates(hit, &surface);
-        // A footprint that is stretched by a grazing view is taken as round: narrow enough not to blur across.
-        let cos = face.dot(toward).abs().max(0.2);
-        let place = TexturePlace { uv, width: cone.after(hit.t).width * texture_density.abs() / cos };
+        let place = if self.world.textured[surface.material as usize] {
+            // A footprint that is stretched by a grazing view is taken as round: narrow enough not to blur across.
+            let cos = face.dot(toward).abs().max(0.2);
+            let width = cone.after(hit.t).width * texture_density.abs() / cos;
+            TexturePlace { uv: self.texture_coordinates(hit, &surface), width }
+        } else {
+            TexturePlace { uv: [0.0; 2], width: 0.0 }
+        };
         let index = chosen_scatter(&self.world.scatters, &self.images, surface.material, &place, random);
         let scatter = &self.world.scatters[index as usize];
         let own = &self.world.scatters[surface.material as usize];

@@ -36,6 +36,8 @@ pub struct PhysicalWorld {
     pub faces: Vec<Face>,
     /// Materials.
     pub scatters: Vec<Scatter>,
+    /// Of each material: whether an image decides of it, or of an ingredient, so that places on its surfaces matter.
+    pub textured: Vec<bool>,
     /// Energy tables of the materials.
     pub tables: Vec<f32>,
     /// Images.
@@ -90,6 +92,7 @@ impl PhysicalWorld {
             faces,
             has_masks: scatters.iter().any(|scatter| scatter.mask_image != NONE),
             shapes: builder.finish(position.abs().max_element()),
+            textured: (0..scatters.len()).map(|index| scatters::is_textured(&scatters, index)).collect(),
             scatters,
             tables,
             environment: scene.environment.as_ref().map(|of| StoredEnvironment::new(of, &scene.images)),

@@ -18,6 +18,16 @@ pub(super) fn flatten(materials: &[SurfaceDesc]) -> (Vec<Scatter>, Vec<f32>) {
     (scatters, tables.floats)
 }
 
+/// Whether a material, or an ingredient of a mix, has an image. Mixes lead nowhere in a circle.
+pub(super) fn is_textured(scatters: &[Scatter], index: usize) -> bool {
+    let Scatter { color_image, specular_image, radiance_image, normal_image, mask_image, weight_image, .. } =
+        scatters[index];
+    let images = [color_image, specular_image, radiance_image, normal_image, mask_image, weight_image];
+    let Scatter { kind, first, second, .. } = scatters[index];
+    images.into_iter().any(|image| image != NONE)
+        || (kind == MIX && [first, second].into_iter().any(|part| is_textured(scatters, part as usize)))
+}
+
 /// Energy tables; materials that lose alike share theirs.
 #[derive(Default)]
 struct Tables {
