@@ -7,6 +7,7 @@ use crate::mesh::{Place, place_triangle};
 use crate::pages::Pages;
 use glam::Vec3;
 use lightcuts_kernel::intersect::{SPHERE, SQUARE, Sphere, Square, TRIANGLE};
+use lightcuts_kernel::ray::NONE;
 use lightcuts_kernel::surface::{Primitive, Surfaces, TriangleCorners};
 use lightcuts_scene::{MaterialId, MeshDesc};
 
@@ -78,44 +79,34 @@ impl Builder {
     ) {
         for triangle in &mesh.triangles {
             let (points, corners) = place_triangle(mesh, triangle, placement, smooth);
-            let [a, b, c] = points;
-            let bounds = (a.min(b).min(c), a.max(b).max(c));
-            self.push(TRIANGLE, self.corners.len(), material(triangle.material), bounds);
+            self.push(TRIANGLE, self.corners.len(), material(triangle.material), triangle_box(&points));
             self.corners.push(corners);
             self.points.push(points);
         }
     }
 
     pub(crate) fn add_square(&mut self, frame: &SquareFrame, material: u32) {
-        let (half_width, half_height) = (frame.width / 2.0, frame.height / 2.0);
-        let reach = (frame.across * half_width).abs() + (frame.along * half_height).abs();
-        let primitive = self.push(SQUARE, self.squares.len(), material, (frame.center - reach, frame.center + reach));
-        self.squares.push(Square {
+        let mut square = Square {
             center: frame.center,
-            half_height,
+            half_height: frame.height / 2.0,
             normal: frame.normal,
-            half_width,
+            half_width: frame.width / 2.0,
             along: frame.along,
-            primitive,
+            primitive: NONE,
             across: frame.across,
             padding: 0,
-        });
+        };
+        square.primitive = self.push(SQUARE, self.squares.len(), material, square_box(&square));
+        self.squares.push(square);
     }
 
-    /// The boxes anew, of primitives that were changed.
+    /// Recomputes the boxes of triangles and squares that were changed.
     pub(crate) fn fit_boxes(&mut self) {
         for (primitive, bounds) in self.primitives.iter().zip(&mut self.boxes) {
             let index = primitive.index as usize;
             match primitive.kind {
-                TRIANGLE => {
-                    let [a, b, c] = self.points[index];
-                    *bounds = (a.min(b).min(c), a.max(b).max(c));
-                }
-                SQUARE => {
-                    let square = &self.squares[index];
-                    let reach = (square.across * square.half_width).abs() + (square.along * square.half_height).abs();
-                    *bounds = (square.center - reach, square.center + reach);
-                }
+                TRIANGLE => *bounds = triangle_box(&self.points[index]),
+                SQUARE => *bounds = square_box(&self.squares[index]),
                 _ => {}
             }
         }
@@ -139,4 +130,13 @@ impl Builder {
             corners: self.corners.into(),
         }
     }
+}
+
+fn triangle_box(&[a, b, c]: &[Vec3; 3]) -> (Vec3, Vec3) {
+    (a.min(b).min(c), a.max(b).max(c))
+}
+
+fn square_box(square: &Square) -> (Vec3, Vec3) {
+    let reach = (square.across * square.half_width).abs() + (square.along * square.half_height).abs();
+    (square.center - reach, square.center + reach)
 }
