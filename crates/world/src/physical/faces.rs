@@ -3,6 +3,7 @@
 use crate::shapes::Builder;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
+use lightcuts_kernel::intersect::Square;
 use lightcuts_kernel::ray::normalize_or_zero;
 use lightcuts_kernel::rounding::{UNIT, triangle_slack};
 use lightcuts_kernel::surface::TriangleCorners;
@@ -90,9 +91,7 @@ pub(super) fn overlap(builder: &mut Builder, extent: f32) {
         *points = grown(points, extent);
     }
     for square in &mut builder.squares {
-        let size = square.half_width.min(square.half_height);
-        let coordinate = square.center.abs().max_element().max(square.half_width).max(square.half_height);
-        let more = overlap_of(f64::from(coordinate), f64::from(size), extent) as f32;
+        let more = square_overlap(square, extent) as f32;
         square.half_width += more;
         square.half_height += more;
     }
@@ -100,14 +99,41 @@ pub(super) fn overlap(builder: &mut Builder, extent: f32) {
 }
 
 fn grown(points: &[Vec3; 3], extent: f64) -> [Vec3; 3] {
-    let exact = points.map(Vec3::as_dvec3);
-    let [a, b, c] = exact;
-    let middle = (a + b + c) / 3.0;
+    let points = points.map(Vec3::as_dvec3);
+    about_middle(&points, growth(&points, extent)).map(|p| p.as_vec3())
+}
+
+/// A triangle that overlaps others at its edges, made so much smaller that it does not: by twice as much as it grew, for its corners
+/// were rounded since.
+pub(super) fn without_overlap(points: &[DVec3; 3], extent: f64) -> [DVec3; 3] {
+    about_middle(points, -2.0 * growth(points, extent))
+}
+
+/// Half width and half height of a square, likewise.
+pub(super) fn square_without_overlap(square: &Square, extent: f64) -> [f64; 2] {
+    let less = 2.0 * square_overlap(square, extent);
+    [square.half_width, square.half_height].map(|half| (f64::from(half) - less).max(0.0))
+}
+
+/// How far a square reaches beyond its edges, in scene units.
+fn square_overlap(square: &Square, extent: f64) -> f64 {
+    let size = square.half_width.min(square.half_height);
+    let coordinate = square.center.abs().max_element().max(square.half_width).max(square.half_height);
+    overlap_of(f64::from(coordinate), f64::from(size), extent)
+}
+
+/// By which share of its size a triangle grows, so that it reaches as far beyond each edge as it is to.
+fn growth(points: &[DVec3; 3], extent: f64) -> f64 {
+    let [a, b, c] = *points;
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let coordinate = exact.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let coordinate = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
     let doubled_area = (b - a).cross(c - a).length();
     // The middle is a third of the height away from each edge.
     let overlap = overlap_of(coordinate, longest, extent);
-    let growth = (overlap * 3.0 * longest / doubled_area.max(f64::MIN_POSITIVE)).min(MOST_GROWTH);
-    exact.map(|p: DVec3| (p + (p - middle) * growth).as_vec3())
+    (overlap * 3.0 * longest / doubled_area.max(f64::MIN_POSITIVE)).min(MOST_GROWTH)
+}
+
+fn about_middle(points: &[DVec3; 3], growth: f64) -> [DVec3; 3] {
+    let middle = (points[0] + points[1] + points[2]) / 3.0;
+    points.map(|p| p + (p - middle) * growth)
 }

@@ -4,6 +4,7 @@
 //! so would count each. Both go by one rule, for which the ties are listed here: of surfaces in one place the first that shines
 //! towards a ray is met, else the first in file order.
 
+use super::faces::{square_without_overlap, without_overlap};
 use crate::bvh::{ChildRef, LANES};
 use crate::{Shapes, physical::PhysicalWorld};
 use glam::{DVec2, DVec3, Vec3};
@@ -11,13 +12,14 @@ use lightcuts_kernel::intersect::{Sphere, Square, Triangle};
 use lightcuts_kernel::ray::NONE;
 use lightcuts_kernel::rounding::UNIT;
 
-/// How far surfaces may be apart to count as in one place, relative to the size of the emissive one.
+/// How far surfaces may be apart to count as in one place, relative to the size of the one that shines or has holes.
 const RELATIVE_DISTANCE: f64 = 1e-5;
 
 /// The same in roundings of coordinates.
 const ROUNDINGS: f64 = 8.0 * UNIT as f64;
 
-/// Share of the smaller surface that must be in both: neighbours in a mesh share their edges only.
+/// Share of the smaller surface that must be in both, without what they reach beyond their edges: neighbours in a mesh share these
+/// only.
 const LEAST_SHARE: f64 = 1e-4;
 
 /// Which primitives lie in one place with which others.
@@ -59,16 +61,18 @@ impl Ties {
         if self.tied.is_empty() { 0.0 } else { self.slacks[primitive as usize] }
     }
 
-    /// Finds the ties of the primitives for which `is_asked`.
-    fn find(shapes: &Shapes, is_asked: impl Fn(usize) -> bool) -> Self {
+    /// Finds the ties of the primitives for which `is_asked`; `extent` is the diagonal of the scene.
+    fn find(shapes: &Shapes, extent: f64, is_asked: impl Fn(usize) -> bool) -> Self {
         let mut pairs = Vec::new();
         let asked = |primitive: u32| (primitive as usize) < shapes.primitives.len() && is_asked(primitive as usize);
         let triangles = shapes.triangles.iter().flat_map(|block| (0..LANES).map(|lane| block.triangle(lane)));
-        let forms = triangles.filter(|triangle| asked(triangle.primitive)).map(Form::triangle);
+        let forms = triangles.filter(|triangle| asked(triangle.primitive));
+        let forms = forms.map(|triangle| Form::triangle(triangle, extent));
         let forms = forms.chain(shapes.spheres.iter().filter(|sphere| asked(sphere.primitive)).map(Form::sphere));
-        let forms = forms.chain(shapes.squares.iter().filter(|square| asked(square.primitive)).map(Form::square));
+        let squares = shapes.squares.iter().filter(|square| asked(square.primitive));
+        let forms = forms.chain(squares.map(|square| Form::square(square, extent)));
         for form in forms {
-            visit(shapes, &form, |other| {
+            visit(shapes, extent, &form, |other| {
                 if other.primitive != form.primitive && form.is_in_place_of(&other) {
                     pairs.push((form.primitive, other.tied(), form.tolerance));
                     pairs.push((other.primitive, form.tied(), form.tolerance));
@@ -105,9 +109,11 @@ impl Ties {
 impl PhysicalWorld {
     /// Moves the emission of tied emitters past what lies in their place.
     pub(super) fn settle_ties(&mut self) {
-        let Self { shapes, primitive_emitters, scatters, .. } = &*self;
+        let Self { shapes, primitive_emitters, scatters, bounds, .. } = &*self;
         let has_holes = |primitive: usize| scatters[shapes.primitives[primitive].material as usize].mask_image != NONE;
-        self.ties = Ties::find(shapes, |primitive| primitive_emitters[primitive] != NONE || has_holes(primitive));
+        let extent = f64::from((bounds.1 - bounds.0).length());
+        self.ties =
+            Ties::find(shapes, extent, |primitive| primitive_emitters[primitive] != NONE || has_holes(primitive));
         for emitter in self.emitters.iter_mut().filter(|emitter| emitter.primitive != NONE) {
             emitter.slack = emitter.slack.max(self.ties.slack(emitter.primitive));
         }
@@ -124,36 +130,49 @@ struct Form {
 }
 
 enum Outline {
-    /// Corners in order.
-    Flat(Vec<DVec3>),
+    /// Corners in order, without what the primitive reaches beyond its edges.
+    Triangle([DVec3; 3]),
+    Square([DVec3; 4]),
     Sphere(Sphere),
 }
 
+impl Outline {
+    /// Corners in order; none of a sphere.
+    fn corners(&self) -> &[DVec3] {
+        match self {
+            Self::Triangle(corners) => corners,
+            Self::Square(corners) => corners,
+            Self::Sphere(_) => &[],
+        }
+    }
+}
+
 impl Form {
-    fn triangle(triangle: Triangle) -> Self {
+    fn triangle(triangle: Triangle, extent: f64) -> Self {
         let corner = triangle.corner.as_dvec3();
-        let corners = vec![corner, corner + triangle.edge1.as_dvec3(), corner + triangle.edge2.as_dvec3()];
-        Self::flat(triangle.primitive, triangle, corners)
+        let corners = [corner, corner + triangle.edge1.as_dvec3(), corner + triangle.edge2.as_dvec3()];
+        let outline = Outline::Triangle(without_overlap(&corners, extent));
+        Self::flat(triangle.primitive, triangle, outline, &corners)
     }
 
-    fn square(square: &Square) -> Self {
-        let (center, across, along) = (
-            square.center.as_dvec3(),
-            square.across.as_dvec3() * f64::from(square.half_width),
-            square.along.as_dvec3() * f64::from(square.half_height),
-        );
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-        let corners = corners.iter().map(|(u, v)| center + across * *u + along * *v).collect();
-        Self::flat(square.primitive, NO_TRIANGLE, corners)
+    fn square(square: &Square, extent: f64) -> Self {
+        let (center, across, along) = (square.center.as_dvec3(), square.across.as_dvec3(), square.along.as_dvec3());
+        let corners = |[half_width, half_height]: [f64; 2]| {
+            let (across, along) = (across * half_width, along * half_height);
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(u, v)| center + across * u + along * v)
+        };
+        let outline = Outline::Square(corners(square_without_overlap(square, extent)));
+        let halves = [square.half_width, square.half_height].map(f64::from);
+        Self::flat(square.primitive, NO_TRIANGLE, outline, &corners(halves))
     }
 
-    fn flat(primitive: u32, triangle: Triangle, corners: Vec<DVec3>) -> Self {
+    fn flat(primitive: u32, triangle: Triangle, outline: Outline, corners: &[DVec3]) -> Self {
         let lower = corners.iter().copied().reduce(DVec3::min).unwrap_or_default();
         let upper = corners.iter().copied().reduce(DVec3::max).unwrap_or_default();
         let coordinate = lower.abs().max(upper.abs()).max_element();
         let tolerance = (upper - lower).length() * RELATIVE_DISTANCE + coordinate * ROUNDINGS;
         let bounds = ((lower - tolerance).as_vec3(), (upper + tolerance).as_vec3());
-        Self { primitive, triangle, outline: Outline::Flat(corners), tolerance, bounds }
+        Self { primitive, triangle, outline, tolerance, bounds }
     }
 
     fn sphere(sphere: &Sphere) -> Self {
@@ -180,8 +199,8 @@ impl Form {
                 let off = a.center.as_dvec3().distance(b.center.as_dvec3()) + f64::from((a.radius - b.radius).abs());
                 off <= self.tolerance
             }
-            (Outline::Flat(a), Outline::Flat(b)) => are_in_one_place(a, b, self.tolerance),
-            _ => false,
+            (Outline::Sphere(_), _) | (_, Outline::Sphere(_)) => false,
+            (a, b) => meet(self.bounds, other.bounds) && are_in_one_place(a.corners(), b.corners(), self.tolerance),
         }
     }
 }
@@ -190,27 +209,31 @@ const NO_TRIANGLE: Triangle =
     Triangle { corner: Vec3::ZERO, primitive: NONE, edge1: Vec3::ZERO, padding0: 0, edge2: Vec3::ZERO, padding1: 0 };
 
 /// Visits all primitives whose boxes meet that of a form.
-fn visit(shapes: &Shapes, form: &Form, mut report: impl FnMut(Form)) {
+fn visit(shapes: &Shapes, extent: f64, form: &Form, mut report: impl FnMut(Form)) {
     let mut open: Vec<u32> = if shapes.nodes.is_empty() { Vec::new() } else { vec![0] };
     while let Some(node) = open.pop() {
         let node = &shapes.nodes[node as usize];
         for lane in 0..LANES {
-            let (lower, upper) = node.child_box(lane);
-            if !(lower.cmple(form.bounds.1).all() && upper.cmpge(form.bounds.0).all()) {
+            if !meet(node.child_box(lane), form.bounds) {
                 continue;
             }
             match ChildRef::unpack(node.child[lane]) {
                 ChildRef::Node(child) => open.push(child),
                 ChildRef::Sphere(i) => report(Form::sphere(&shapes.spheres[i as usize])),
-                ChildRef::Square(i) => report(Form::square(&shapes.squares[i as usize])),
+                ChildRef::Square(i) => report(Form::square(&shapes.squares[i as usize], extent)),
                 ChildRef::Triangles(i) => {
                     let block = &shapes.triangles[i as usize];
                     let there = (0..LANES).map(|lane| block.triangle(lane)).filter(|t| t.primitive != NONE);
-                    there.for_each(|triangle| report(Form::triangle(triangle)));
+                    there.for_each(|triangle| report(Form::triangle(triangle, extent)));
                 }
             }
         }
     }
+}
+
+/// Whether two boxes have a point in common.
+fn meet((lower, upper): (Vec3, Vec3), other: (Vec3, Vec3)) -> bool {
+    lower.cmple(other.1).all() && upper.cmpge(other.0).all()
 }
 
 /// Whether two convex outlines share an area, and their planes are no farther apart there than `tolerance`.
@@ -261,3 +284,6 @@ fn clipped(outline: &[DVec2], by: &[DVec2]) -> Vec<DVec2> {
     }
     rest
 }
+
+#[cfg(test)]
+mod tests;
