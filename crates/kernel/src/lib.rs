@@ -1,7 +1,7 @@
 //! Pure rendering functions over flat records: what every device computes, written once for each.
 //!
-//! Nothing here does I/O, allocates, fails or holds a trait object: degenerate input contributes zero, never NaN. A file
-//! belongs here if and only if it has a WGSL twin of the same stem, or stands on [`TWINS_TO_COME`].
+//! Nothing here does I/O, allocates, fails or holds a trait object: degenerate input contributes zero, never NaN. A
+//! file belongs here if and only if it has a WGSL twin of the same stem, or stands on [`TWINS_TO_COME`].
 
 pub mod bsdf;
 pub mod camera;

@@ -1,7 +1,8 @@
 //! Rounding errors of hits: points put back onto their surfaces, and how far off these they may still be.
 //!
-//! After Pharr, Jakob & Humphreys 2023, "Physically Based Rendering", section 6.8; differs: bounds are of the distance from the
-//! surface's plane, component by component, so that what lies in a plane across an axis has next to none, however large it is.
+//! After Pharr, Jakob & Humphreys 2023, "Physically Based Rendering", section 6.8; differs: bounds are of the distance
+//! from the surface's plane, component by component, so that what lies in a plane across an axis has next to none,
+//! however large it is.
 
 use crate::intersect::{Sphere, Square};
 use glam::Vec3;
@@ -24,7 +25,8 @@ const LEAST_ERRORS: f32 = 2.0;
 /// By how much a ray to a place is longer than the way there, relative to it: walls that meet at the place are found.
 pub const REACH: f32 = 1.0 + 8.0 * UNIT;
 
-/// How far a place keeps off its own surface, relative to the way of a ray to it: more than the error of a hit from there.
+/// How far a place keeps off its own surface, relative to the way of a ray to it: more than the error of a hit from
+/// there.
 pub const APPROACH: f32 = 16.0 * UNIT;
 
 /// The point of the plane `normal . x = offset` nearest to one.
@@ -44,8 +46,8 @@ pub fn onto_sphere(point: Vec3, sphere: &Sphere) -> Vec3 {
     if length > 0.0 { sphere.center + offset * (sphere.radius / length) } else { point }
 }
 
-/// Bound on the distance between a plane and a point that was put back onto it, and on errors of intersections near the point;
-/// `slack` is what the primitive's own size adds, such as [`triangle_slack`]. In scene units.
+/// Bound on the distance between a plane and a point that was put back onto it, and on errors of intersections near the
+/// point; `slack` is what the primitive's own size adds, such as [`triangle_slack`]. In scene units.
 pub fn plane_error(point: Vec3, normal: Vec3, slack: f32) -> f32 {
     UNIT * (POINT_ERRORS * normal.abs().dot(point.abs()) + LEAST_ERRORS * point.abs().max_element()) + slack
 }
@@ -60,7 +62,8 @@ pub fn sphere_slack(radius: f32) -> f32 {
     UNIT * SPHERE_ERRORS * radius
 }
 
-/// The slack of a triangle for rays that begin next to it: errors of [`crate::intersect::intersect_triangle`] across its plane.
+/// The slack of a triangle for rays that begin next to it: errors of [`crate::intersect::intersect_triangle`] across
+/// its plane.
 pub fn triangle_slack(edge1: Vec3, edge2: Vec3) -> f32 {
     let lower = edge1.min(edge2).min(Vec3::ZERO);
     let reach = edge1.max(edge2).max(Vec3::ZERO) - lower;

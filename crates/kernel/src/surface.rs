@@ -27,7 +27,8 @@ pub struct TriangleCorners {
     pub normals: [Vec3; 3],
     /// Texture coordinates.
     pub texture_coordinates: [[f32; 2]; 3],
-    /// What the triangle's size adds to the rounding errors of hits, in scene units; 0 in the thesis' model, which does not ask.
+    /// What the triangle's size adds to the rounding errors of hits, in scene units; 0 in the thesis' model, which does
+    /// not ask.
     pub slack: f32,
 }
 

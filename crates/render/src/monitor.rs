@@ -5,9 +5,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Receives the progress of a render and may cancel it. Called from the rendering thread between batches of tiles, and
 /// from worker threads during them.
 pub trait Monitor: Sync {
-    /// A stage begins with this many steps, all of about the same duration. Of most stages they are tiles or rows. Of the physical
-    /// model's [`Stage::Samples`] they are samples of tiles (so many for each tile as there are samples of a pixel), or thousandths
-    /// of the render where a limit of time or noise may end it: of whichever limit will probably be reached first.
+    /// A stage begins with this many steps, all of about the same duration. Of most stages they are tiles or rows. Of
+    /// the physical model's [`Stage::Samples`] they are samples of tiles (so many for each tile as there are samples of
+    /// a pixel), or thousandths of the render where a limit of time or noise may end it: of whichever limit will
+    /// probably be reached first.
     fn begin(&self, _stage: Stage, _steps: u64) {}
     /// A step of the current stage is done. A render that ends early need not have told all of them.
     fn advance(&self) {}

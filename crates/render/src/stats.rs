@@ -33,8 +33,8 @@ pub struct Stats {
     /// Why no more samples were taken.
     #[serde(default)]
     pub end: End,
-    /// Samples of a pixel, on average; of the thesis' model those of the first pass. What a pixel shows of a neighbour's does not
-    /// count.
+    /// Samples of a pixel, on average; of the thesis' model those of the first pass. What a pixel shows of a
+    /// neighbour's does not count.
     #[serde(default)]
     pub samples_per_pixel: f64,
     /// Samples of every pixel that were asked for; none where only time, noise or a person ends the render.
@@ -43,8 +43,8 @@ pub struct Stats {
     /// Pixels of the physical model that show the nearest one that has a sample, because the first pass was broken off.
     #[serde(default)]
     pub unsampled_pixels: u64,
-    /// Of the physical model: relative standard error of the pixels, as a root mean square, estimated from how much their samples
-    /// vary; of large pictures from a part of the rows. None where no pixel has two samples.
+    /// Of the physical model: relative standard error of the pixels, as a root mean square, estimated from how much
+    /// their samples vary; of large pictures from a part of the rows. None where no pixel has two samples.
     #[serde(default)]
     pub relative_error: Option<f64>,
     /// What ran each station, in the order place, photons, tree, gather, develop; only those that ran.

@@ -9,16 +9,15 @@ const SLACK: f64 = 1e-6;
 /// A cosine nearer to 1 than this is that of one plane: coordinates of 32 bits tell no more.
 const FLAT: f64 = 1e-11;
 
-/// Gives the triangles without normals some, so that neighbours look like one curved surface unless the angle between them is
-/// above `degrees`.
+/// Gives the triangles without normals some, so that neighbours look like one curved surface unless the angle between
+/// them is above `degrees`.
 ///
-/// Two triangles are neighbours where they share an edge, by position, that no third one has, and run along it in opposite
-/// directions. `group` says which smoothing group a triangle is in: those of different groups are no neighbours, and `None`
-/// stays flat. A corner's normal is the sum over the triangles that it is joined to, each weighted by the sine of its angle
-/// there over the lengths of both edges: exact for vertices on a sphere (Max, "Weights for Computing Vertex Normals from Facet
-/// Normals", Journal of Graphics Tools 4(2), 1999). Triangles that stay flat stay without normals; for angles of
-/// 0 and less all do. Takes time and memory in
-/// proportion to the mesh.
+/// Two triangles are neighbours where they share an edge, by position, that no third one has, and run along it in
+/// opposite directions. `group` says which smoothing group a triangle is in: those of different groups are no
+/// neighbours, and `None` stays flat. A corner's normal is the sum over the triangles that it is joined to, each
+/// weighted by the sine of its angle there over the lengths of both edges: exact for vertices on a sphere (Max,
+/// "Weights for Computing Vertex Normals from Facet Normals", Journal of Graphics Tools 4(2), 1999). Triangles that
+/// stay flat stay without normals; for angles of 0 and less all do. Takes time and memory in proportion to the mesh.
 pub fn smooth_normals(mesh: &mut MeshDesc, degrees: f32, group: impl Fn(usize) -> Option<u32>) {
     if degrees <= 0.0 {
         return;

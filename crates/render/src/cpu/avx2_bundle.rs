@@ -1,8 +1,8 @@
 //! Eight rays that go much the same way, with AVX2. Twin of the plain traversal for each of them, same hits.
 //!
-//! The hierarchy is walked once for all: a node's eight boxes are tested against everything that lies between the rays, by
-//! interval arithmetic (Boulos et al. 2007, "Packet-based Whitted and Distribution Ray Tracing"), and what remains against each
-//! ray, eight at once, as are triangles. Rays that have come to be alone go on by themselves.
+//! The hierarchy is walked once for all: a node's eight boxes are tested against everything that lies between the rays,
+//! by interval arithmetic (Boulos et al. 2007, "Packet-based Whitted and Distribution Ray Tracing"), and what remains
+//! against each ray, eight at once, as are triangles. Rays that have come to be alone go on by themselves.
 
 #![allow(unsafe_code)]
 
@@ -144,8 +144,8 @@ impl<'a> Bundle<'a> {
         asked & !open
     }
 
-    /// The nearest of the best hits so far and those of the rays in `asked`; `rays` are all of them. `OTHERS` says whether spheres
-    /// and squares count.
+    /// The nearest of the best hits so far and those of the rays in `asked`; `rays` are all of them. `OTHERS` says
+    /// whether spheres and squares count.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     fn closest_hits<const OTHERS: bool>(
         &self,
@@ -300,7 +300,8 @@ pub(super) fn closest_hits(tracer: &Tracer<'_>, rays: &[Ray; LANES]) -> [Hit; LA
     hits
 }
 
-/// Least and greatest value of some lanes, each in all lanes; `asked` has a bit for each. What is no number does not count.
+/// Least and greatest value of some lanes, each in all lanes; `asked` has a bit for each. What is no number does not
+/// count.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 fn range(values: __m256, asked: u32) -> (__m256, __m256) {

@@ -129,8 +129,8 @@ impl Shadow {
     }
 }
 
-/// Shadow rays that are still to be traced. First those of many VPLs, then their ways, then their light: a processor can begin with
-/// the next few while it waits for what the first ones need, as long as little else lies between them.
+/// Shadow rays that are still to be traced. First those of many VPLs, then their ways, then their light: a processor
+/// can begin with the next few while it waits for what the first ones need, as long as little else lies between them.
 pub(super) type Batch = Stack<Shadow, MOST>;
 
 /// What the chosen VPLs add; twin of the plain `evaluate`.

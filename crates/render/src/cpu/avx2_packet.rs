@@ -1,10 +1,10 @@
-//! Eight shadow rays at a time, from one point or from neighbours. Twin of `lightcuts_world::bvh::any_hit` for each of them,
-//! same answers.
+//! Eight shadow rays at a time, from one point or from neighbours. Twin of `lightcuts_world::bvh::any_hit` for each of
+//! them, same answers.
 //!
-//! The thesis' rooms have few spheres and squares around a mesh. These are tested without their boxes, eight rays at once; a
-//! square is mostly told by its plane. What is left and meets the box of the mesh goes down the hierarchy as a bundle if all rays'
-//! directions have the same signs, as those of neighbours to one light mostly do, else ray by ray. Many packets from the same
-//! places are for `avx2_shadows`.
+//! The thesis' rooms have few spheres and squares around a mesh. These are tested without their boxes, eight rays at
+//! once; a square is mostly told by its plane. What is left and meets the box of the mesh goes down the hierarchy as a
+//! bundle if all rays' directions have the same signs, as those of neighbours to one light mostly do, else ray by ray.
+//! Many packets from the same places are for `avx2_shadows`.
 
 #![allow(unsafe_code)]
 
@@ -122,8 +122,8 @@ pub(super) fn meet(
     _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32
 }
 
-/// Boxes that any of some rays may cross, and the earliest that one may enter them, by interval arithmetic: from where the rays begin
-/// to the boxes' near and far sides, with the least and the greatest reciprocals of their directions.
+/// Boxes that any of some rays may cross, and the earliest that one may enter them, by interval arithmetic: from where
+/// the rays begin to the boxes' near and far sides, with the least and the greatest reciprocals of their directions.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
 pub(super) fn meet_any(

@@ -1,7 +1,7 @@
 //! Neighbouring points that gather together, with AVX2: one VPL at a time for eight of them.
 //!
-//! What nothing can hide from eight neighbours is found out for all of them at once, and its light is added there and then. The other
-//! shadow rays to a VPL go together.
+//! What nothing can hide from eight neighbours is found out for all of them at once, and its light is added there and
+//! then. The other shadow rays to a VPL go together.
 
 #![allow(unsafe_code)]
 
@@ -118,9 +118,9 @@ impl<'a> Points<'a> {
         self.asked = transposed(rows).map(u32::from);
     }
 
-    /// The ways to a VPL of the current block, counted, and those on which there is light if nothing is between: of the points that
-    /// have it, where they do not know it for certain only those where its relevance reaches the threshold. None, where neither
-    /// lights the other.
+    /// The ways to a VPL of the current block, counted, and those on which there is light if nothing is between: of the
+    /// points that have it, where they do not know it for certain only those where its relevance reaches the threshold.
+    /// None, where neither lights the other.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn ways(&mut self, block: &VplBlock, lane: usize, threshold: Option<f32>) -> Option<(Ways, __m256)> {
@@ -171,8 +171,8 @@ fn counted(counts: __m256i, mask: __m256) -> __m256i {
     _mm256_sub_epi32(counts, _mm256_castps_si256(mask))
 }
 
-/// Twin of the plain `evaluate_together`, for up to 32 points whose candidates are in the order of their blocks: one VPL at a time for all
-/// points that have it, whose shadow rays go much the same way.
+/// Twin of the plain `evaluate_together`, for up to 32 points whose candidates are in the order of their blocks: one
+/// VPL at a time for all points that have it, whose shadow rays go much the same way.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[allow(clippy::large_stack_arrays)] // two dozen KiB, of which little is written
 pub(super) fn evaluate_together(

@@ -56,8 +56,9 @@ pub(crate) struct Decisions {
     pub(crate) descend: u32,
 }
 
-/// Appends the VPLs that may light points of a box (its lower and its upper corner), in tree order. Those whose relevance at one of
-/// them reaches the threshold, certain or when tested, are exactly the ones that testing every VPL there would find.
+/// Appends the VPLs that may light points of a box (its lower and its upper corner), in tree order. Those whose
+/// relevance at one of them reaches the threshold, certain or when tested, are exactly the ones that testing every VPL
+/// there would find.
 pub(crate) fn select(
     tree: &LightTree,
     avx2: bool,
@@ -124,8 +125,8 @@ fn select_wide(
     }
 }
 
-/// Walks a binary tree in heap order without a stack: what comes after a subtree follows from its root's number. Twin of
-/// what GPUs do.
+/// Walks a binary tree in heap order without a stack: what comes after a subtree follows from its root's number. Twin
+/// of what GPUs do.
 fn select_packed(
     tree: &LightTree,
     packed: &PackedTree,
@@ -251,8 +252,8 @@ pub(crate) fn evaluate(
     gathered
 }
 
-/// [`evaluate`] for at most 32 points, each with its candidates in the order of their blocks. Quicker than one by one where points are
-/// neighbours, in the order of how near they are.
+/// [`evaluate`] for at most 32 points, each with its candidates in the order of their blocks. Quicker than one by one
+/// where points are neighbours, in the order of how near they are.
 #[allow(unsafe_code)]
 pub(crate) fn evaluate_together(
     tracer: &Tracer<'_>,

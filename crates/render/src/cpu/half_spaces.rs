@@ -226,10 +226,10 @@ fn planes(geometry: &Geometry<'_>, boxes: &[(Vec3, Vec3)]) -> Vec<Plane> {
 /// them, provided that the point's height above the plane is not of the other sign. None, for a VPL outside of the
 /// enclosure.
 ///
-/// With the heights p and v of point and VPL along the normal, seen from the plane, it is crossed at t = p / (p - v): at 1
-/// or beyond, or before 0, where v has the sign of p. `intersect_square` computes that from p and from the slope
-/// (p - v); if |v| is more than their errors together, what is rounded keeps that order. A box's face is met at a t that
-/// is rounded no worse.
+/// With the heights p and v of point and VPL along the normal, seen from the plane, it is crossed at t = p / (p - v):
+/// at 1 or beyond, or before 0, where v has the sign of p. `intersect_square` computes that from p and from the slope
+/// (p - v); if |v| is more than their errors together, what is rounded keeps that order. A box's face is met at a t
+/// that is rounded no worse.
 fn sides_of(planes: &[Plane], position: Vec3, enclosure: &Enclosure) -> Sides {
     let mut sides = Sides::default();
     if !enclosure.contains(position) {

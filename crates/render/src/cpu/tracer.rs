@@ -6,8 +6,8 @@ use lightcuts_kernel::Rules;
 use lightcuts_kernel::ray::{Hit, Ray};
 use lightcuts_world::bvh::{BvhNode, Geometry, LANES, any_hit, closest_hit};
 
-/// Traces rays through a geometry by the best means that the machine has. Hits are those of the kernel's plain functions, bit
-/// for bit, whatever the means.
+/// Traces rays through a geometry by the best means that the machine has. Hits are those of the kernel's plain
+/// functions, bit for bit, whatever the means.
 #[derive(Debug, Clone, Copy)]
 pub struct Tracer<'a> {
     pub(crate) geometry: Geometry<'a>,
@@ -61,8 +61,8 @@ impl<'a> Tracer<'a> {
         any_hit(&self.geometry, ray, self.rules)
     }
 
-    /// The nearest hits of eight rays. Quicker than one by one where they go much the same way, such as those of neighbouring
-    /// pixels, and no slower where they do not.
+    /// The nearest hits of eight rays. Quicker than one by one where they go much the same way, such as those of
+    /// neighbouring pixels, and no slower where they do not.
     #[allow(unsafe_code)]
     pub fn closest8(&self, rays: &[Ray; LANES]) -> [Hit; LANES] {
         #[cfg(target_arch = "x86_64")]
@@ -73,8 +73,8 @@ impl<'a> Tracer<'a> {
         rays.map(|ray| self.closest(&ray))
     }
 
-    /// Which of the rays in `asked`, a bit each, something lies between the ends of; the other bits are 0. Quicker than one by one
-    /// where they go much the same way, such as those of neighbouring points to one light.
+    /// Which of the rays in `asked`, a bit each, something lies between the ends of; the other bits are 0. Quicker than
+    /// one by one where they go much the same way, such as those of neighbouring points to one light.
     #[allow(unsafe_code)]
     pub fn occluded8(&self, rays: &[Ray; LANES], asked: u8) -> u8 {
         #[cfg(target_arch = "x86_64")]

@@ -1,8 +1,10 @@
-//! Caustics: light that comes by focused lobes (mirrors, smooth glass and metal) onto other surfaces, by photons (Jensen 1996).
+//! Caustics: light that comes by focused lobes (mirrors, smooth glass and metal) onto other surfaces, by photons
+//! (Jensen 1996).
 //!
-//! Paths from the camera meet it by chance only, and that of point lights in mirrors never. Each pass shoots photons anew and
-//! counts them in a disk around each point; the disk shrinks from pass to pass, so that the mean of all passes converges (Knaus &
-//! Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach"). What photons bring is left out of paths: see `Before`.
+//! Paths from the camera meet it by chance only, and that of point lights in mirrors never. Each pass shoots photons
+//! anew and counts them in a disk around each point; the disk shrinks from pass to pass, so that the mean of all passes
+//! converges (Knaus & Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach"). What photons bring is left
+//! out of paths: see `Before`.
 
 use super::emission::Origins;
 use super::light_path::{Arrival, trace_light};
@@ -20,7 +22,8 @@ const FIRST_RADIUS: f32 = 0.008;
 /// What a pass leaves of the disk's area: (k + this) / (k + 1) after pass k.
 const SHRINKAGE: f32 = 2.0 / 3.0;
 
-/// Least cosine between the normals of a photon and of the point that it lights: edges and thin walls keep light to one side.
+/// Least cosine between the normals of a photon and of the point that it lights: edges and thin walls keep light to one
+/// side.
 const LEAST_AGREEMENT: f32 = 0.7;
 
 /// How far a photon may be above or below the disk, relative to its radius.

@@ -47,8 +47,9 @@ pub(crate) struct Before {
 }
 
 impl Before {
-    /// Weight of light that was met by chance, by the density with which it is drawn from where the path was before. Light that
-    /// the camera sees, or that comes from a single direction, cannot be drawn; caustics that photons bring count nothing.
+    /// Weight of light that was met by chance, by the density with which it is drawn from where the path was before.
+    /// Light that the camera sees, or that comes from a single direction, cannot be drawn; caustics that photons bring
+    /// count nothing.
     pub(crate) fn weight(before: Option<&Self>, light_pdf: impl Fn(&Interaction) -> f32) -> f32 {
         match before {
             Some(before) if before.is_spread && before.is_focused => 0.0,
@@ -59,8 +60,8 @@ impl Before {
         }
     }
 
-    /// Whether a lobe by which a path goes on is focused, and whether that or an earlier one spread light. What is met by focused
-    /// lobes behind one that spreads is a caustic, which photons bring.
+    /// Whether a lobe by which a path goes on is focused, and whether that or an earlier one spread light. What is met
+    /// by focused lobes behind one that spreads is a caustic, which photons bring.
     pub(crate) fn course(before: Option<&Self>, at: &Interaction, lobe: u32, has_photons: bool) -> (bool, bool) {
         let is_focused = is_focused(at, lobe);
         (is_focused, has_photons && (!is_focused || before.is_some_and(|before| before.is_spread)))
@@ -78,8 +79,8 @@ pub(crate) struct DirectLight<'a> {
 }
 
 impl DirectLight<'_> {
-    /// The estimate by a light for each point of random numbers, of which the last one is left; `value` is the BSDF times the cosine
-    /// for a direction.
+    /// The estimate by a light for each point of random numbers, of which the last one is left; `value` is the BSDF
+    /// times the cosine for a direction.
     pub(crate) fn estimate<const N: usize>(
         &self,
         points: [[f32; 4]; N],
@@ -133,8 +134,8 @@ impl Scene<'_> {
         if far == 0.0 { 0.0 } else { far / (far + f32::from(u8::from(self.world.placed_emitters > 0))) }
     }
 
-    /// Draws a light for each random number, with its probability; `None` where none can shine. The environment has the number behind
-    /// all emitters.
+    /// Draws a light for each random number, with its probability; `None` where none can shine. The environment has the
+    /// number behind all emitters.
     fn draw_lights<const N: usize>(&self, at: &Interaction, randoms: [f32; N]) -> [Option<(u32, f32)>; N] {
         let far = self.far_probability();
         if far == 0.0 {

@@ -99,10 +99,10 @@ impl<'a> Receiver<'a> {
         Gathered { light, size: tree.lights.len() as u32, bound: 0.0 }
     }
 
-    /// The sum over a cut (Walter et al. 2005): clusters are opened until the error bound of each is at most `error` times the
-    /// light of all, or there are `max_cut` of them. That light is `reference`, a sum of channels; where there is none it is what
-    /// was gathered so far, which depends on the lights that stand for clusters and so is biased a little where that is
-    /// averaged.
+    /// The sum over a cut (Walter et al. 2005): clusters are opened until the error bound of each is at most `error`
+    /// times the light of all, or there are `max_cut` of them. That light is `reference`, a sum of channels; where
+    /// there is none it is what was gathered so far, which depends on the lights that stand for clusters and so is
+    /// biased a little where that is averaged.
     pub(crate) fn cut(
         &self,
         tree: &ClusterTree,

@@ -12,8 +12,9 @@ struct Waiting<T, A> {
     add: A,
 }
 
-/// Does `work` for each number below `count` on the threads of the current pool, and gives each result to `add`, in the order of
-/// numbers. When `add` returns false no more work is begun; what is done by then is added all the same, still in order.
+/// Does `work` for each number below `count` on the threads of the current pool, and gives each result to `add`, in the
+/// order of numbers. When `add` returns false no more work is begun; what is done by then is added all the same, still
+/// in order.
 pub(crate) fn in_order<T: Send>(
     count: usize,
     work: impl Fn(usize) -> T + Sync,

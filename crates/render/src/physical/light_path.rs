@@ -40,9 +40,9 @@ pub(crate) struct Arrival<'a> {
     pub(crate) random: [f32; 2],
 }
 
-/// Traces a fixed number of light paths and collects what `leave` makes of each arrival. Their number, never that of what they
-/// leave, is what power is divided by. Paths go on from a place by a lobe only where `follows` says so. Once `is_over`, what is
-/// left is of no use.
+/// Traces a fixed number of light paths and collects what `leave` makes of each arrival. Their number, never that of
+/// what they leave, is what power is divided by. Paths go on from a place by a lobe only where `follows` says so. Once
+/// `is_over`, what is left is of no use.
 pub(crate) fn trace_light<T: Send>(
     scene: &Scene<'_>,
     origins: &Origins,
@@ -108,8 +108,8 @@ fn follow<T>(
     }
 }
 
-/// Light paths meet surfaces by their faces and scatter by their shading normals: what a camera path would have as cosines
-/// (Veach 1997, section 5.3).
+/// Light paths meet surfaces by their faces and scatter by their shading normals: what a camera path would have as
+/// cosines (Veach 1997, section 5.3).
 fn shading_correction(at: &Interaction, from: Vec3, to: Vec3) -> f32 {
     let ratio = |direction: Vec3| at.normal.dot(direction).abs() / at.face.dot(direction).abs().max(1e-6);
     ratio(from) / ratio(to).max(1e-6)

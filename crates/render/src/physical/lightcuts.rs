@@ -1,8 +1,8 @@
 //! Indirect light from the virtual lights of a pass.
 //!
-//! A vertex sends light on by matt lobes, which virtual lights stand for, and by others, which paths follow. So a path carries
-//! two factors: one on what the next vertex sends by its matt lobes, one on the rest. Where a vertex gathers virtual lights
-//! the first one is left with what the clamp of their distance takes away (Kollig & Keller 2004).
+//! A vertex sends light on by matt lobes, which virtual lights stand for, and by others, which paths follow. So a path
+//! carries two factors: one on what the next vertex sends by its matt lobes, one on the rest. Where a vertex gathers
+//! virtual lights the first one is left with what the clamp of their distance takes away (Kollig & Keller 2004).
 
 use super::bundle::{Bundle, Clusters, Cutting, Fineness};
 use super::cluster_tree::ClusterTree;
@@ -28,8 +28,8 @@ const GREATEST_GATHERED_EXPONENT: f32 = 60.0;
 /// Lights that are drawn at a vertex that gathers a whole cut: its share of the time is small.
 const FIRST_LIGHTS: u32 = 4;
 
-/// Lights that are drawn at a vertex with a glossy lobe: the fewer, the more is left to rays that meet a light by chance, which is
-/// where single pixels come out too bright.
+/// Lights that are drawn at a vertex with a glossy lobe: the fewer, the more is left to rays that meet a light by
+/// chance, which is where single pixels come out too bright.
 const GLOSSY_LIGHTS: u32 = 8;
 
 /// Virtual lights that are drawn where a path comes to its second matt vertex.
@@ -107,8 +107,8 @@ struct Drawn {
 }
 
 impl Lightcuts<'_> {
-    /// The light against a camera ray, with VPLs that a strategy gathers; points whose light is a sum over all of them or over a
-    /// cut are left in `pending`.
+    /// The light against a camera ray, with VPLs that a strategy gathers; points whose light is a sum over all of them
+    /// or over a cut are left in `pending`.
     pub(crate) fn sample(
         &self,
         pass: &SamplePass<'_>,
@@ -128,8 +128,8 @@ impl Lightcuts<'_> {
         sampled
     }
 
-    /// Adds the light of the virtual lights at points that samples have left. Points of Lambert's material are computed with one
-    /// another, which is quicker.
+    /// Adds the light of the virtual lights at points that samples have left. Points of Lambert's material are computed
+    /// with one another, which is quicker.
     pub(crate) fn gather(
         &self,
         scene: &Scene<'_>,

@@ -1,8 +1,8 @@
 //! What a render has so far: sums for each technique, and how they count together.
 //!
-//! Where several techniques show the same light, each tile weighs them by the inverse of their variances. If a variance came from
-//! the samples that it weighs, a rare bright sample would lower its own weight, and pictures would be too dark. So variances come
-//! from probes, samples of a few pixels that are not shown.
+//! Where several techniques show the same light, each tile weighs them by the inverse of their variances. If a variance
+//! came from the samples that it weighs, a rare bright sample would lower its own weight, and pictures would be too
+//! dark. So variances come from probes, samples of a few pixels that are not shown.
 
 use super::pass::SampledTile;
 use super::sums::{Moments, PixelSums};
@@ -23,8 +23,8 @@ const PICTURE_FREEDOM: f64 = 256.0;
 /// Brightness below which errors count no more, relative to the picture's mean.
 const DARK: f64 = 0.8;
 
-/// Techniques with less weight than this are left out: what they would add is less than what a bright speck of theirs, of which
-/// the variance did not know, would spoil.
+/// Techniques with less weight than this are left out: what they would add is less than what a bright speck of theirs,
+/// of which the variance did not know, would spoil.
 const LEAST_WEIGHT: f64 = 0.1;
 
 /// Variances below this, relative to the pixels' squares, are taken as this.
@@ -110,7 +110,8 @@ impl Mixture {
         Self {
             width: width as usize,
             height: height as usize,
-            // Zeros of the system, as everything here that has a value for each pixel: what gets no sample is never touched.
+            // Zeros of the system, as everything here that has a value for each pixel: what gets no sample is never
+            // touched.
             pixels: bytemuck::zeroed_vec(width as usize * height as usize),
             canvases: (0..techniques).map(|_| None).collect(),
             variances: vec![vec![None; tiles.len()]; techniques],
@@ -181,8 +182,8 @@ impl Mixture {
         self.variances[technique][tile]
     }
 
-    /// What the light of each pixel is, as a sum of channels: mean over the pixel's neighbourhood, of reflected light only, for a
-    /// light in the picture says nothing of its surroundings.
+    /// What the light of each pixel is, as a sum of channels: mean over the pixel's neighbourhood, of reflected light
+    /// only, for a light in the picture says nothing of its surroundings.
     fn smooth_light(&self) -> Vec<f32> {
         const REACH: usize = 2;
         let (width, height) = (self.width, self.height);

@@ -37,8 +37,8 @@ use crate::monitor::Monitor;
 use crate::settings::{Model, Settings, SettingsError};
 use lightcuts_world::PhysicalWorld;
 
-/// Renders a physical world on the threads of the current rayon pool; `settings.physical` says how. Fails only if a parameter is
-/// out of range. A monitor that cancels gets what there is, with `stats.complete` false.
+/// Renders a physical world on the threads of the current rayon pool; `settings.physical` says how. Fails only if a
+/// parameter is out of range. A monitor that cancels gets what there is, with `stats.complete` false.
 pub fn render_physical(
     world: &PhysicalWorld,
     settings: &Settings,

@@ -117,7 +117,8 @@ impl SamplePass<'_> {
         sampled.iter().map(glimpse).collect()
     }
 
-    /// Takes a sample, which has a number, of each of up to eight pixels; returns how far they are from the pixels' centres too.
+    /// Takes a sample, which has a number, of each of up to eight pixels; returns how far they are from the pixels'
+    /// centres too.
     fn take(
         &self,
         pixels: impl Iterator<Item = ((u32, u32), u32)>,

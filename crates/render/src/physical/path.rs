@@ -1,5 +1,5 @@
-//! Path tracing: the reference (Kajiya 1986), with light drawn at every vertex and weighed by multiple importance sampling
-//! (Veach 1997).
+//! Path tracing: the reference (Kajiya 1986), with light drawn at every vertex and weighed by multiple importance
+//! sampling (Veach 1997).
 
 use super::direct::{Before, DirectLight};
 use super::pass::{SamplePass, Start};

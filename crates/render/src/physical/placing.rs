@@ -75,8 +75,8 @@ impl<'a> Placing<'a> {
         (!watch.is_over()).then_some(tree)
     }
 
-    /// Virtual lights of a pass. Their number is about what is wanted, by the experience of earlier passes; the number of paths
-    /// is fixed before they are traced.
+    /// Virtual lights of a pass. Their number is about what is wanted, by the experience of earlier passes; the number
+    /// of paths is fixed before they are traced.
     fn place(&mut self, pass: u32, watch: &Watch<'_>, stats: &mut Stats) -> Vec<VirtualLight> {
         let lights_per_path = self.lights as f64 / self.paths.max(1) as f64;
         let wanted = f64::from(self.settings.physical.vpls) / lights_per_path.max(1e-3);

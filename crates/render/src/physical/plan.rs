@@ -1,8 +1,8 @@
 //! What each tile gets in a pass: which technique pays most there.
 //!
-//! A technique costs time and leaves variance. By inverse variance two of them together are never worse than the better alone, but
-//! time is best spent on the one with the smallest product of variance and time of a sample. All of them are probed at a few
-//! pixels of every tile now and then, so that the choice can change.
+//! A technique costs time and leaves variance. By inverse variance two of them together are never worse than the better
+//! alone, but time is best spent on the one with the smallest product of variance and time of a sample. All of them are
+//! probed at a few pixels of every tile now and then, so that the choice can change.
 
 use super::mixture::Mixture;
 use super::pass::SampledTile;
@@ -65,8 +65,8 @@ impl Plan {
                 Task { tile, technique, extent }
             }));
         }
-        // All tiles in one pass, for which VPLs are traced, and all techniques, the chosen one too: with more samples it would
-        // show more of its rare bright ones, and seem worse.
+        // All tiles in one pass, for which VPLs are traced, and all techniques, the chosen one too: with more samples
+        // it would show more of its rare bright ones, and seem worse.
         if is_asking || self.probe_seconds <= PROBE_SHARE * self.seconds {
             let extent = Extent::Probe(self.probes);
             let of_tile = |tile| (0..self.techniques.len()).map(move |technique| Task { tile, technique, extent });
@@ -85,8 +85,8 @@ impl Plan {
         best.map_or(0, |(technique, _)| technique)
     }
 
-    /// Samples of a technique in a pass. VPLs of a pass light a pixel once: a second time would show nothing new. For the same
-    /// variance the error of all tiles together is least if each gets samples by the root of their time.
+    /// Samples of a technique in a pass. VPLs of a pass light a pixel once: a second time would show nothing new. For
+    /// the same variance the error of all tiles together is least if each gets samples by the root of their time.
     fn samples(&self, choices: &[usize], technique: usize) -> u32 {
         if self.techniques[technique].uses_vpls() {
             return 1;

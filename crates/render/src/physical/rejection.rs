@@ -1,8 +1,8 @@
-//! Which virtual lights of light paths are kept: those that matter to the camera (Georgiev & Slusallek 2010, "Simple and Robust
-//! Iterative Importance Sampling of Virtual Point Lights").
+//! Which virtual lights of light paths are kept: those that matter to the camera (Georgiev & Slusallek 2010, "Simple
+//! and Robust Iterative Importance Sampling of Virtual Point Lights").
 //!
-//! A candidate that brings less than the mean to places that the camera sees is kept with a probability of the ratio, and is as
-//! much brighter then. The mean comes from earlier passes, so that nothing is biased.
+//! A candidate that brings less than the mean to places that the camera sees is kept with a probability of the ratio,
+//! and is as much brighter then. The mean comes from earlier passes, so that nothing is biased.
 
 use super::gather::Receiver;
 use super::lightcuts::gathered_lobes;
@@ -41,8 +41,8 @@ pub(crate) struct Rejection {
 pub(crate) struct Judged {
     /// The light, if it is kept.
     pub(crate) light: Option<VirtualLight>,
-    /// What it brings to a place, as a sum of channels, if its light path were the only one: paths share the power of the lights,
-    /// and passes differ in the number of paths.
+    /// What it brings to a place, as a sum of channels, if its light path were the only one: paths share the power of
+    /// the lights, and passes differ in the number of paths.
     worth: f32,
 }
 

@@ -160,8 +160,8 @@ impl PixelSums {
     }
 }
 
-/// Sums over the samples that a pixel got from one technique, of their brightness (r + g + b) / 3; of probes without light that
-/// was not scattered.
+/// Sums over the samples that a pixel got from one technique, of their brightness (r + g + b) / 3; of probes without
+/// light that was not scattered.
 #[derive(Debug, Clone, Copy, Default, Zeroable)]
 pub(crate) struct Moments {
     pub(crate) samples: u32,

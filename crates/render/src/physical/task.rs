@@ -32,8 +32,8 @@ impl Extent {
     }
 }
 
-/// Parts of a tile, side by side, of each of which a probe sees a square of two by two pixels: neighbours, as techniques are
-/// quickest with them.
+/// Parts of a tile, side by side, of each of which a probe sees a square of two by two pixels: neighbours, as
+/// techniques are quickest with them.
 const PROBED_PARTS: u32 = 2;
 
 /// Probes of the same pixels, so that their samples can be compared; the next ones see others.

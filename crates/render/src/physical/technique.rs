@@ -19,7 +19,8 @@ pub(crate) enum Technique {
 const STRATEGIES: [Strategy; 3] = [Strategy::Lightcuts, Strategy::Stochastic, Strategy::All];
 
 impl Technique {
-    /// Those that a render may use; it chooses among them by measurement where there are several. The one to begin with is first.
+    /// Those that a render may use; it chooses among them by measurement where there are several. The one to begin with
+    /// is first.
     pub(crate) fn of(settings: &Settings) -> Vec<Self> {
         let gathered: &[Strategy] = match &settings.gather.strategy {
             Strategy::Auto => &STRATEGIES,

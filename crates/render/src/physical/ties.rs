@@ -1,4 +1,5 @@
-//! Which of several surfaces in one place is met, where one of them shines or has holes; see [`lightcuts_world::physical::Ties`].
+//! Which of several surfaces in one place is met, where one of them shines or has holes; see
+//! [`lightcuts_world::physical::Ties`].
 
 use super::scene::Scene;
 use glam::Vec3;
@@ -11,11 +12,13 @@ use lightcuts_kernel::ray::{Hit, NONE, Ray};
 use lightcuts_kernel::surface::surface_at;
 use lightcuts_world::physical::Tied;
 
-/// How far apart along a ray, relative to the way, hits in one place may be: more than grazing rays draw rounding errors out.
+/// How far apart along a ray, relative to the way, hits in one place may be: more than grazing rays draw rounding
+/// errors out.
 const SPREAD: f32 = 1e-2;
 
 impl Scene<'_> {
-    /// Of a hit and those in its place the one that is met: the first that shines towards the ray, else the first in file order.
+    /// Of a hit and those in its place the one that is met: the first that shines towards the ray, else the first in
+    /// file order.
     #[inline]
     pub(super) fn first_of_tied(&self, ray: &Ray, hit: Hit) -> Hit {
         match self.world.ties.of(hit.primitive) {

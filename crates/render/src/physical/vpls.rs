@@ -8,7 +8,8 @@ use lightcuts_kernel::bsdf::{MATT, PLASTIC, energy_at, lobes_of, mean_energy};
 use lightcuts_kernel::virtual_light::{VirtualLight, pack_direction, virtual_table};
 use std::f32::consts::PI;
 
-/// Traces a fixed number of light paths for the virtual lights of a pass, and judges them. Once `is_over`, they are of no use.
+/// Traces a fixed number of light paths for the virtual lights of a pass, and judges them. Once `is_over`, they are of
+/// no use.
 pub(crate) fn trace_vpls(
     scene: &Scene<'_>,
     origins: &Origins,

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 /// Steps of a render whose end time or noise decides.
 const THOUSANDTHS: u64 = 1000;
 
-/// Time to make a picture of the samples, for each pixel: what is left of a limit of time for it, on two cores. Much of it goes into
-/// memory that is touched for the first time.
+/// Time to make a picture of the samples, for each pixel: what is left of a limit of time for it, on two cores. Much of
+/// it goes into memory that is touched for the first time.
 const DEVELOPING: Duration = Duration::from_nanos(40);
 
 /// Watches the time, the samples and the person at the other end.
@@ -65,7 +65,8 @@ impl<'a> Watch<'a> {
         self.monitor.cancelled()
     }
 
-    /// Whether no more samples may be taken. Asked often, between a few pixels; tells the monitor of the time on the way.
+    /// Whether no more samples may be taken. Asked often, between a few pixels; tells the monitor of the time on the
+    /// way.
     pub(crate) fn is_over(&self) -> bool {
         if self.monitor.cancelled() {
             return true;

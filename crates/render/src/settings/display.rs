@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Display {
-    /// Factor on light before anything else. The default is not written: files of jobs stay as they were before it came.
+    /// Factor on light before anything else. The default is not written: files of jobs stay as they were before it
+    /// came.
     #[serde(skip_serializing_if = "Exposure::is_neutral")]
     pub exposure: Exposure,
     /// Tone mapping operator.

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Physical {
     /// Light transport algorithm.
     pub integrator: Integrator,
-    /// Seconds that rendering may take, first pass and all; 0 for no limit. A picture is whole whatever the limit: pixels that get
-    /// no sample in time show the nearest one that has.
+    /// Seconds that rendering may take, first pass and all; 0 for no limit. A picture is whole whatever the limit:
+    /// pixels that get no sample in time show the nearest one that has.
     pub time_limit: f32,
     /// Estimated relative RMS error of the pixels below which no more samples are taken; 0 for none.
     pub noise: f32,

@@ -239,7 +239,8 @@ fn a_device_that_forgets_tiles_does_not_make_the_picture() {
     assert_eq!(kinds(&rendering), kinds(&expected));
 }
 
-/// The original's VPLs and picture come out, no matter whether the device goes away while the shifts are found or later.
+/// The original's VPLs and picture come out, no matter whether the device goes away while the shifts are found or
+/// later.
 #[test]
 fn faults_leave_the_original_reproduced() {
     let (world, mut settings) = scene("thesis/simple.txt", Vec::new());

@@ -31,8 +31,8 @@ pub enum EmitterKind {
         intensity: Vec3,
         /// Angle from the axis up to which the intensity is full, in degrees.
         inner_degrees: f32,
-        /// Angle from the axis from which on it is 0, in degrees, at least `inner_degrees` and at most 180; between both
-        /// the intensity falls smoothly with the cosine.
+        /// Angle from the axis from which on it is 0, in degrees, at least `inner_degrees` and at most 180; between
+        /// both the intensity falls smoothly with the cosine.
         outer_degrees: f32,
     },
     /// Directional light: parallel rays from infinitely far away.

@@ -94,8 +94,9 @@ pub enum Scattering {
     },
     /// Diffuse under a clear coat.
     Plastic {
-        /// Share of the light which entered the coat that leaves it again. A base of reflectance a under a coat that reflects the
-        /// share Fi of diffuse light back inside has a (1 - Fi) / (1 - a Fi); Fi is 0.596 for an index of 1.5.
+        /// Share of the light which entered the coat that leaves it again. A base of reflectance a under a coat that
+        /// reflects the share Fi of diffuse light back inside has a (1 - Fi) / (1 - a Fi); Fi is 0.596 for an index of
+        /// 1.5.
         albedo: Tint,
         /// Refractive index of the coat, above 1 and below 3.
         ior: f32,

@@ -1,8 +1,8 @@
 //! Scenes of the physical model: radiometric units, materials and lights that keep energy.
 //!
-//! Lengths are in scene units. Of a point light the radiant intensity is given (power per solid angle, W/sr), of directional
-//! light the irradiance across it (W per square unit), of surfaces and the environment the radiance (W per square unit and
-//! steradian); each as linear RGB with the primaries of Rec. 709.
+//! Lengths are in scene units. Of a point light the radiant intensity is given (power per solid angle, W/sr), of
+//! directional light the irradiance across it (W per square unit), of surfaces and the environment the radiance (W per
+//! square unit and steradian); each as linear RGB with the primaries of Rec. 709.
 
 mod camera;
 mod light;

@@ -52,8 +52,8 @@ pub enum PhysicalShape {
 }
 
 impl PhysicalShape {
-    /// The least box around it in scene units, as lower and upper corner; `None` for a mesh without triangles, or one that is not
-    /// among `meshes`.
+    /// The least box around it in scene units, as lower and upper corner; `None` for a mesh without triangles, or one
+    /// that is not among `meshes`.
     pub fn bounds(&self, meshes: &[MeshDesc]) -> Option<(DVec3, DVec3)> {
         match *self {
             Self::Sphere { center, radius } => {

@@ -1,7 +1,8 @@
 //! Scenes of the thesis' model in the physical one.
 //!
-//! Its lights do not fall off with distance, its materials do not keep energy: neither can be carried over exactly. Geometry and
-//! view are the same; a light gets the radiant intensity with which it gives the thesis' brightness at a middle distance.
+//! Its lights do not fall off with distance, its materials do not keep energy: neither can be carried over exactly.
+//! Geometry and view are the same; a light gets the radiant intensity with which it gives the thesis' brightness at a
+//! middle distance.
 
 use super::{
     EmissionDesc, EmitterDesc, EmitterKind, ImageId, PhysicalCamera, PhysicalObject, PhysicalScene, PhysicalShape,
@@ -19,12 +20,12 @@ const PLANE_HEIGHT: f32 = 5.12;
 
 /// A scene of the thesis' model in the physical one.
 ///
-/// * A light of colour c (diffuse colour times attenuation) would light a white surface that faces it to c at any distance.
-///   Here it does at the reference distance d, half the diagonal of the box around all objects: a point has the intensity
-///   pi d^2 c, an area light the radiance pi d^2 n c / A for its area A and the n points that the thesis cuts it into, directional
-///   light the irradiance pi c. `light_scale` is a factor on all of them.
-/// * E times the diffuse and specular colours make a Phong material, scaled down where both exceed 1; F mixes in a mirror, R a
-///   smooth dielectric of index 1/K. Ambient light has no counterpart: interreflection takes its place.
+/// * A light of colour c (diffuse colour times attenuation) would light a white surface that faces it to c at any
+///   distance. Here it does at the reference distance d, half the diagonal of the box around all objects: a point has
+///   the intensity pi d^2 c, an area light the radiance pi d^2 n c / A for its area A and the n points that the thesis
+///   cuts it into, directional light the irradiance pi c. `light_scale` is a factor on all of them.
+/// * E times the diffuse and specular colours make a Phong material, scaled down where both exceed 1; F mixes in a
+///   mirror, R a smooth dielectric of index 1/K. Ambient light has no counterpart: interreflection takes its place.
 /// * The thesis adds a texture's texels to the colour of the surface; here they are the diffuse colour.
 pub fn from_thesis(scene: &SceneDesc, light_scale: f32) -> PhysicalScene {
     let mut made = PhysicalScene {

@@ -14,8 +14,8 @@ use lightcuts_kernel::surface::TriangleCorners;
 pub struct Face {
     /// Unit normal about which the corners run counterclockwise; zero where the triangle has no area.
     pub normal: Vec3,
-    /// Texture coordinates per scene unit: the root of the ratio of both areas. Negative where the texture is seen mirrored from
-    /// the normal's side, so that v grows against normal x tangent.
+    /// Texture coordinates per scene unit: the root of the ratio of both areas. Negative where the texture is seen
+    /// mirrored from the normal's side, so that v grows against normal x tangent.
     pub texture_density: f32,
     /// Unit direction in which u grows; zero where the triangle has no area in the texture.
     pub tangent: Vec3,
@@ -23,8 +23,8 @@ pub struct Face {
     pub offset: f32,
 }
 
-/// How far primitives reach beyond their edges, in roundings of their greatest coordinate or size, so that rays find no gap between
-/// those that meet there: more than the errors of their corners.
+/// How far primitives reach beyond their edges, in roundings of their greatest coordinate or size, so that rays find no
+/// gap between those that meet there: more than the errors of their corners.
 const CORNER_ERRORS: f64 = 32.0;
 
 /// The same in roundings of the scene's extent: from so far away rays miss edges by as much.
@@ -103,8 +103,8 @@ fn grown(points: &[Vec3; 3], extent: f64) -> [Vec3; 3] {
     about_middle(&points, growth(&points, extent)).map(|p| p.as_vec3())
 }
 
-/// A triangle that overlaps others at its edges, made so much smaller that it does not: by twice as much as it grew, for its corners
-/// were rounded since.
+/// A triangle that overlaps others at its edges, made so much smaller that it does not: by twice as much as it grew,
+/// for its corners were rounded since.
 pub(super) fn without_overlap(points: &[DVec3; 3], extent: f64) -> [DVec3; 3] {
     about_middle(points, -2.0 * growth(points, extent))
 }

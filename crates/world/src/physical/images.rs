@@ -56,8 +56,8 @@ fn decoded(pixels: &Pixels) -> Vec<[f32; 4]> {
     }
 }
 
-/// Half as wide and high, rounded down: each pixel is the mean of those that it covers, by area (of an odd number the middle
-/// one counts in part for both sides).
+/// Half as wide and high, rounded down: each pixel is the mean of those that it covers, by area (of an odd number the
+/// middle one counts in part for both sides).
 fn halved(pixels: &[[f32; 4]], width: usize, height: usize) -> (Vec<[f32; 4]>, usize, usize) {
     let (half_width, half_height) = ((width / 2).max(1), (height / 2).max(1));
     let mut made = Vec::with_capacity(half_width * half_height);

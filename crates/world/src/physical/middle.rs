@@ -8,10 +8,10 @@ const NEAR: f64 = 8.0;
 
 /// The middle of a scene, in its coordinates; what is near the origin stays where it is.
 ///
-/// Rounding matters relative to an object's size, so that is what distances are divided by: the middle is the place with the least
-/// sum of them, a weighted median along each axis. A huge ground does not draw it away from what stands there. It is rounded to a
-/// power of two of about the distances between objects: so a scene keeps its numbers but for the first digits, and what lies in one
-/// plane goes on to do so.
+/// Rounding matters relative to an object's size, so that is what distances are divided by: the middle is the place
+/// with the least sum of them, a weighted median along each axis. A huge ground does not draw it away from what stands
+/// there. It is rounded to a power of two of about the distances between objects: so a scene keeps its numbers but for
+/// the first digits, and what lies in one plane goes on to do so.
 pub(super) fn middle(scene: &PhysicalScene) -> DVec3 {
     let objects: Vec<(DVec3, f64)> = scene.objects.iter().filter_map(|object| ball(scene, &object.shape)).collect();
     if objects.is_empty() {

@@ -1,8 +1,9 @@
-//! Surfaces that shine or have holes and lie in one place with others: a lamp flush with the ceiling, the same face twice, a decal.
+//! Surfaces that shine or have holes and lie in one place with others: a lamp flush with the ceiling, the same face
+//! twice, a decal.
 //!
-//! Rounding alone would decide which of them a ray meets, while light that is drawn from an emitter stops short of all of them and
-//! so would count each. Both go by one rule, for which the ties are listed here: of surfaces in one place the first that shines
-//! towards a ray is met, else the first in file order.
+//! Rounding alone would decide which of them a ray meets, while light that is drawn from an emitter stops short of all
+//! of them and so would count each. Both go by one rule, for which the ties are listed here: of surfaces in one place
+//! the first that shines towards a ray is met, else the first in file order.
 
 use super::faces::{square_without_overlap, without_overlap};
 use crate::bvh::{ChildRef, LANES};
@@ -18,8 +19,8 @@ const RELATIVE_DISTANCE: f64 = 1e-5;
 /// The same in roundings of coordinates.
 const ROUNDINGS: f64 = 8.0 * UNIT as f64;
 
-/// Share of the smaller surface that must be in both, without what they reach beyond their edges: neighbours in a mesh share these
-/// only.
+/// Share of the smaller surface that must be in both, without what they reach beyond their edges: neighbours in a mesh
+/// share these only.
 const LEAST_SHARE: f64 = 1e-4;
 
 /// Which primitives lie in one place with which others.

@@ -1,8 +1,8 @@
 //! Which clusters make up a cut.
 //!
-//! Where the light of all is known from earlier passes, whether a cluster is opened depends on nothing but its own bound: the cut is
-//! found first, in the order of the tree, and then summed up. Elsewhere, and where a cut may not grow as it would, the cluster with
-//! the greatest bound is opened first, and the light of all is what was gathered so far.
+//! Where the light of all is known from earlier passes, whether a cluster is opened depends on nothing but its own
+//! bound: the cut is found first, in the order of the tree, and then summed up. Elsewhere, and where a cut may not grow
+//! as it would, the cluster with the greatest bound is opened first, and the light of all is what was gathered so far.
 
 use super::vectors::{Vectors, Wide3, add, divided, loaded, scaled, stored, sub};
 use super::{Bundle, gathered};
@@ -27,8 +27,8 @@ pub(crate) struct Fineness {
 pub(crate) struct Cutting<'a> {
     pub(crate) tree: &'a ClusterTree,
     pub(crate) fineness: Fineness,
-    /// The light of all, as a sum of channels, of each point; the last one's for what is left of the eight. `None` where it is not
-    /// known.
+    /// The light of all, as a sum of channels, of each point; the last one's for what is left of the eight. `None`
+    /// where it is not known.
     pub(crate) references: Option<[f32; LANES]>,
 }
 
@@ -86,7 +86,8 @@ impl Bundle<'_> {
         gathered(light, size, bound)
     }
 
-    /// Finds the cut where the light of all is known; returns its size and bound. `None` if it is larger than it may be.
+    /// Finds the cut where the light of all is known; returns its size and bound. `None` if it is larger than it may
+    /// be.
     #[inline(always)]
     fn find<L: Lanes>(
         &self,

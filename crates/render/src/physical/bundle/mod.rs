@@ -1,7 +1,8 @@
-//! Station 5 for eight points at once: the light of all virtual lights, or of one cut that is fine enough for each of the points.
+//! Station 5 for eight points at once: the light of all virtual lights, or of one cut that is fine enough for each of
+//! the points.
 //!
-//! Points of neighbouring pixels need much the same cut, and rays from them to one light go much the same way. So a cluster is
-//! bounded for all of them at once, and opened where the bound is too much for any.
+//! Points of neighbouring pixels need much the same cut, and rays from them to one light go much the same way. So a
+//! cluster is bounded for all of them at once, and opened where the bound is too much for any.
 
 mod bound;
 mod cut;
@@ -111,8 +112,8 @@ impl<'a> Bundle<'a> {
         self.sum_of_all::<crate::cpu::Wide>(tree, counts)
     }
 
-    /// The sum over a cut, at each point (Walter et al. 2005): as [`Receiver::cut`], but that a cluster is opened where its bound
-    /// is too much for any of the points.
+    /// The sum over a cut, at each point (Walter et al. 2005): as [`Receiver::cut`], but that a cluster is opened where
+    /// its bound is too much for any of the points.
     pub(crate) fn cut(&self, cutting: &Cutting<'_>, clusters: &mut Clusters, counts: &mut Counts) -> [Gathered; LANES] {
         #[cfg(target_arch = "x86_64")]
         if self.receivers[0].scene.simd.has_avx2() {

@@ -140,7 +140,8 @@ fn camera() -> PhysicalCamera {
     }
 }
 
-/// A lamp in one plane with other surfaces shines as if it were alone, of all integrators, in every order, form and turn.
+/// A lamp in one plane with other surfaces shines as if it were alone, of all integrators, in every order, form and
+/// turn.
 #[test]
 fn lamps_in_one_plane_with_others_shine_once() {
     const FLOOR: u32 = 0;

@@ -130,7 +130,8 @@ fn a_render_that_is_broken_off_is_whole() {
     }
 }
 
-/// What a finished first pass shows does not depend on the sketch before it: a limit that is never reached changes no bit.
+/// What a finished first pass shows does not depend on the sketch before it: a limit that is never reached changes no
+/// bit.
 #[test]
 fn limits_that_are_not_reached_change_no_bit() {
     for integrator in [Integrator::Path, Integrator::Lightcuts] {
@@ -144,8 +145,8 @@ fn limits_that_are_not_reached_change_no_bit() {
     }
 }
 
-/// The estimate of the error that is left is about the error that is left: not below it, and above it as far as low-discrepancy
-/// points do better than independent ones, which the estimate takes them for: here two to three times.
+/// The estimate of the error that is left is about the error that is left: not below it, and above it as far as
+/// low-discrepancy points do better than independent ones, which the estimate takes them for: here two to three times.
 #[test]
 fn the_error_that_is_told_is_the_error_that_is_left() {
     let scene = closed(room(false));

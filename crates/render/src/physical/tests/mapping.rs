@@ -44,8 +44,8 @@ fn scene(objects: Vec<PhysicalObject>, meshes: Vec<lightcuts_scene::MeshDesc>) -
     }
 }
 
-/// A normal map leans along growing v, as it is on the surface itself: quads with texture coordinates that are mirrored along u,
-/// v or both, turned by quarters, placed by matrices that mirror, and rectangles and spheres.
+/// A normal map leans along growing v, as it is on the surface itself: quads with texture coordinates that are mirrored
+/// along u, v or both, turned by quarters, placed by matrices that mirror, and rectangles and spheres.
 #[test]
 fn normal_maps_lean_along_v() {
     for k in 0..400 {

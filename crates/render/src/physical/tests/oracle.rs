@@ -60,7 +60,8 @@ fn lights(scene: &Scene<'_>, origins: &Origins, paths: u32, stream: u32) -> Vec<
     left.items.iter().filter_map(|judged| judged.light).collect()
 }
 
-/// The oracle: at every pixel the sum over a cut is as near to the sum over all lights as it says, and equal for an error of 0.
+/// The oracle: at every pixel the sum over a cut is as near to the sum over all lights as it says, and equal for an
+/// error of 0.
 #[test]
 fn every_cut_is_within_its_bound() {
     for (name, room, paths) in [
@@ -102,8 +103,8 @@ fn every_cut_is_within_its_bound() {
     }
 }
 
-/// Lights that differ in nothing but power send, through any cut, what all of them send: each is in one cluster of the cut, with
-/// all of its power.
+/// Lights that differ in nothing but power send, through any cut, what all of them send: each is in one cluster of the
+/// cut, with all of its power.
 #[test]
 fn every_light_is_in_one_cluster_of_a_cut() {
     let world = PhysicalWorld::new(&room(false)).unwrap();
@@ -131,8 +132,8 @@ fn every_light_is_in_one_cluster_of_a_cut() {
     assert!(lit > 20);
 }
 
-/// Eight points at once: the sum over all lights is that of each point, cuts are within their bounds, and instructions for eight
-/// numbers change no bit.
+/// Eight points at once: the sum over all lights is that of each point, cuts are within their bounds, and instructions
+/// for eight numbers change no bit.
 #[test]
 fn points_that_are_lit_together_are_lit_as_each_is() {
     for (name, room, paths) in

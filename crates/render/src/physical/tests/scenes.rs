@@ -81,8 +81,8 @@ pub(super) fn mean(rendering: &PhysicalRendering) -> glam::DVec3 {
     pixels.iter().map(|&p| Vec3::from(p).as_dvec3()).sum::<glam::DVec3>() / pixels.len() as f64
 }
 
-/// A box of two coloured walls with a lamp under its ceiling, and two boxes; `occluded` turns the lamp to the ceiling, behind a
-/// shade.
+/// A box of two coloured walls with a lamp under its ceiling, and two boxes; `occluded` turns the lamp to the ceiling,
+/// behind a shade.
 pub(super) fn room(occluded: bool) -> PhysicalScene {
     let (white, red, green) = (Vec3::splat(0.75), Vec3::new(0.6, 0.1, 0.08), Vec3::new(0.12, 0.5, 0.1));
     let materials = vec![
@@ -122,7 +122,8 @@ pub(super) fn room(occluded: bool) -> PhysicalScene {
     }
 }
 
-/// The room with gloss of every kind that is gathered from virtual lights: a floor of rough metal, a Phong wall, a plastic ball.
+/// The room with gloss of every kind that is gathered from virtual lights: a floor of rough metal, a Phong wall, a
+/// plastic ball.
 pub(super) fn glossy_room() -> PhysicalScene {
     let mut scene = room(false);
     let metal = Scattering::Conductor { eta: Vec3::new(0.2, 0.9, 1.2), k: Vec3::new(3.9, 2.4, 2.2), roughness: 0.5 };
@@ -147,7 +148,8 @@ pub(super) fn tall_box() -> MeshDesc {
     }
 }
 
-/// The room with a checkered, uneven wall, glossy things, a sky behind a missing ceiling, or many small lamps in place of one.
+/// The room with a checkered, uneven wall, glossy things, a sky behind a missing ceiling, or many small lamps in place
+/// of one.
 pub(super) fn variants() -> Vec<(&'static str, PhysicalScene)> {
     let mut textured = room(false);
     let checker =

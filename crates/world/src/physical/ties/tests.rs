@@ -50,8 +50,8 @@ fn turn(k: u32) -> glam::DAffine3 {
     glam::DAffine3::from_axis_angle(axis, 6.0 * angle) * glam::DAffine3::from_translation(place)
 }
 
-/// However small its triangles are in the scene, flat or bent a little, turned and placed: they reach beyond their edges, but lie
-/// in no other one's place.
+/// However small its triangles are in the scene, flat or bent a little, turned and placed: they reach beyond their
+/// edges, but lie in no other one's place.
 #[test]
 fn neighbours_in_a_mesh_are_not_tied() {
     for k in 0..24 {
