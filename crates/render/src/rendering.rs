@@ -64,10 +64,10 @@ impl Rendering {
         display.develop(&self.beauty)
     }
 
-    /// The same by a device; by this one where that faults.
+    /// The same by a device; by the CPU if that faults.
     pub fn displayed_on(&self, display: &Display, device: &dyn Device) -> Image {
-        let exposed = display.exposure.apply(&self.beauty);
-        device.tone_map(&exposed, &display.operator()).unwrap_or_else(|_| self.displayed(display))
+        let (exposed, operator) = (display.exposure.apply(&self.beauty), display.operator());
+        device.tone_map(&exposed, &operator).unwrap_or_else(|_| operator.apply(&exposed))
     }
 }
 

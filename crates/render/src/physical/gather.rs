@@ -16,7 +16,7 @@ use lightcuts_kernel::virtual_light::{VirtualLight, virtual_emission};
 pub(crate) struct Receiver<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) at: &'a Interaction,
-    /// Factors on what matt lobes send on, and on what glossy ones do.
+    /// Factors on what diffuse lobes send on, and on what glossy ones do.
     pub(super) matt: Vec3,
     glossy: Vec3,
     pub(super) bound: BoundReceiver,

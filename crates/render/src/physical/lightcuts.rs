@@ -1,7 +1,7 @@
 //! Indirect light from the virtual lights of a pass.
 //!
-//! A vertex sends light on by matt lobes, which virtual lights stand for, and by others, which paths follow. So a path
-//! carries two factors: one on what the next vertex sends by its matt lobes, one on the rest. Where a vertex gathers
+//! A vertex sends light on by diffuse lobes, which virtual lights stand for, and by others, which paths follow. So a path
+//! carries two factors: one on what the next vertex sends by its diffuse lobes, one on the rest. Where a vertex gathers
 //! virtual lights the first one is left with what the clamp of their distance takes away (Kollig & Keller 2004).
 
 use super::bundle::{Bundle, Clusters, Cutting, Fineness};
@@ -32,7 +32,7 @@ const FIRST_LIGHTS: u32 = 4;
 /// chance, which is where single pixels come out too bright.
 const GLOSSY_LIGHTS: u32 = 8;
 
-/// Virtual lights that are drawn where a path comes to its second matt vertex.
+/// Virtual lights that are drawn where a path comes to its second diffuse vertex.
 const DRAWN_LIGHTS: u32 = 4;
 
 /// Virtual lights that the strategy `stochastic` draws.
@@ -59,7 +59,7 @@ pub(crate) struct Pending {
     /// Surfaces before it.
     vertex: u32,
     at: Interaction,
-    /// Factors on what its matt and its glossy lobes send.
+    /// Factors on what its diffuse and its glossy lobes send.
     matt: Vec3,
     glossy: Vec3,
 }
@@ -82,7 +82,7 @@ thread_local! {
 
 /// A path on its way.
 struct Walk {
-    /// Factor on what the next vertex sends by its matt lobes.
+    /// Factor on what the next vertex sends by its diffuse lobes.
     matt: Vec3,
     /// The same that a short ray may give back, before its length is known.
     compensated: Vec3,

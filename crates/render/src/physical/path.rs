@@ -56,7 +56,7 @@ pub(crate) fn trace_path(pass: &SamplePass<'_>, start: Start, counts: &mut Count
         if throughput == Vec3::ZERO {
             break;
         }
-        // Behind a matt vertex textures are looked up at points, as light paths do.
+        // Behind a diffuse vertex textures are looked up at points, as light paths do.
         cone = if sample.lobe == SPECULAR { cone.after(hit.t) } else { Cone::NONE };
         let (is_focused, is_spread) = Before::course(before.as_ref(), &at, sample.lobe, caustics.is_some());
         before = Some(Before { at, pdf: sample.pdf, lights: 1, is_focused, is_spread });

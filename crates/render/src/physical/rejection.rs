@@ -93,7 +93,7 @@ impl Rejection {
     }
 }
 
-/// A matt place that the camera sees, perhaps in mirrors or through glass, with the factor on what it sends.
+/// A diffuse place that the camera sees, perhaps in mirrors or through glass, with the factor on what it sends.
 fn place(scene: &Scene<'_>, lens: &Lens, randoms: &mut Randoms) -> Option<(Interaction, Vec3)> {
     let [x, y, u, v] = randoms.next();
     let mut ray = lens_ray(lens, [x * lens.width as f32, y * lens.height as f32], [u, v]);

@@ -124,8 +124,8 @@ impl PixelSums {
         let cuts = u32::from(has_cut);
         let gathered = f64::from(cuts) * reflected;
         let mut sums = Self { samples: 1, reflected, emitted, cut, bound, cuts, gathered, ..Self::default() };
-        if let Some(first) = &first {
-            sums.see(first);
+        if let Some(first) = first {
+            sums.add(&first.into());
         }
         sums
     }
@@ -147,16 +147,12 @@ impl PixelSums {
         self.cuts += other.cuts;
         self.gathered += other.gathered;
     }
+}
 
-    fn see(&mut self, first: &FirstHit) {
-        self.hits += 1;
-        self.albedo += first.albedo;
-        self.normal += first.normal;
-        self.position += first.position;
-        self.depth += first.depth;
-        if self.object == 0 {
-            (self.object, self.material) = (first.object, first.material);
-        }
+impl From<FirstHit> for PixelSums {
+    /// Of what was met alone, without a sample.
+    fn from(FirstHit { albedo, normal, position, depth, object, material }: FirstHit) -> Self {
+        Self { hits: 1, albedo, normal, position, depth, object, material, ..Self::default() }
     }
 }
 

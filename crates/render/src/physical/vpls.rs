@@ -1,4 +1,4 @@
-//! Station 3: virtual point lights where light paths meet matt surfaces (Keller 1997, "Instant Radiosity").
+//! Station 3: virtual point lights where light paths meet diffuse surfaces (Keller 1997, "Instant Radiosity").
 
 use super::emission::Origins;
 use super::light_path::{Arrival, Left, trace_light};

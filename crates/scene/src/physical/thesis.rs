@@ -12,7 +12,7 @@ use crate::{
     ImageDesc, LightDesc, LightKind, MaterialDesc, MaterialId, MeshDesc, MeshId, MeshTriangle, ObjectDesc, Projection,
     SceneDesc, ShapeDesc, Transform,
 };
-use glam::{Affine3A, DAffine3, DMat3, Mat3, Mat4, Quat, Vec3};
+use glam::{Affine3A, DAffine3, DMat3, Mat3, Quat, Vec3};
 use std::f32::consts::PI;
 
 /// Height of the thesis' view plane, in scene units.
@@ -209,7 +209,7 @@ fn object(from: &ObjectDesc) -> Vec<PhysicalObject> {
                 .collect()
         }
         ShapeDesc::Mesh { mesh, ref transform, smooth, override_material } => {
-            let placement = DAffine3::from_mat4(Mat4::from(placement(transform)).as_dmat4());
+            let placement = placement(transform).as_daffine3();
             vec![of(PhysicalShape::Mesh { mesh, placement, smooth, override_material })]
         }
     }

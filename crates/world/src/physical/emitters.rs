@@ -23,7 +23,7 @@ pub(super) fn collect(scene: &PhysicalScene, origin: DVec3, builder: &Builder, s
     let mut emitters: Vec<Emitter> = Vec::new();
     let mut of_primitives = vec![NONE; builder.primitives.len()];
     for (number, of_primitive) in of_primitives.iter_mut().enumerate() {
-        if let Some(emitter) = luminous(builder, number, scatters) {
+        if let Some(emitter) = emissive(builder, number, scatters) {
             *of_primitive = emitters.len() as u32;
             emitters.push(emitter);
         }
@@ -37,7 +37,7 @@ pub(super) fn collect(scene: &PhysicalScene, origin: DVec3, builder: &Builder, s
 }
 
 /// The light of a primitive that shines and has an area.
-fn luminous(builder: &Builder, number: usize, scatters: &[Scatter]) -> Option<Emitter> {
+fn emissive(builder: &Builder, number: usize, scatters: &[Scatter]) -> Option<Emitter> {
     let primitive = &builder.primitives[number];
     let scatter = &scatters[primitive.material as usize];
     if scatter.radiance == Vec3::ZERO {

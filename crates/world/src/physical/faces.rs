@@ -100,7 +100,7 @@ pub(super) fn overlap(builder: &mut Builder, extent: f32) {
 
 fn grown(points: &[Vec3; 3], extent: f64) -> [Vec3; 3] {
     let points = points.map(Vec3::as_dvec3);
-    about_middle(&points, growth(&points, extent)).map(|p| p.as_vec3())
+    about_middle(&points, growth(&points, extent)).map(DVec3::as_vec3)
 }
 
 /// A triangle that overlaps others at its edges, made so much smaller that it does not: by twice as much as it grew,

@@ -136,7 +136,7 @@ fn two_parallel_plates() {
     assert!((found / exact - 1.0).abs() < 2e-3, "{found} {exact}");
 }
 
-/// A point light in the middle of a matt sphere: I / r^2 rho / pi, and all that is reflected again: over 1 - rho.
+/// A point light in the middle of a diffuse sphere: I / r^2 rho / pi, and all that is reflected again: over 1 - rho.
 #[test]
 fn a_light_in_a_matt_sphere() {
     let albedo = 0.6;
