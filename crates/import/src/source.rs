@@ -52,16 +52,18 @@ impl<'t> Source<'t> {
     }
 }
 
-/// The text of `bytes`: UTF-8 with or without byte order mark, else Latin-1. Bytes that are no text are one fault.
+/// The text of `bytes`: UTF-8 with or without byte order mark, else Latin-1. Lines that all end in `\r`, as those of old files do,
+/// end in `\n` then. Bytes that are no text are one fault.
 pub(crate) fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<Cow<'b, str>, Fault> {
     if let Some(offset) = first_binary_byte(bytes) {
         return Err(binary_fault(name, bytes, offset));
     }
-    let text = decode_line(bytes);
-    Ok(match text {
+    let text = match decode_line(bytes) {
         Cow::Borrowed(text) => Cow::Borrowed(text.trim_start_matches('\u{feff}')),
         Cow::Owned(text) => Cow::Owned(text),
-    })
+    };
+    let ends_in_returns = text.contains('\r') && !text.contains('\n');
+    Ok(if ends_in_returns { Cow::Owned(text.replace('\r', "\n")) } else { text })
 }
 
 /// UTF-8, else Latin-1 (old files have it in comments and names).
@@ -104,6 +106,8 @@ mod tests {
     fn text_is_told_from_binary() {
         assert_eq!(decode("a", b"\xef\xbb\xbfS\xc3\xbc").as_deref(), Ok("Sü"));
         assert_eq!(decode("a", b"# \xfc").as_deref(), Ok("# ü"));
+        assert_eq!(decode("a", b"\xef\xbb\xbfa\rb\r\rc").as_deref(), Ok("a\nb\n\nc"));
+        assert_eq!(decode("a", b"a\r\nb\rc").as_deref(), Ok("a\r\nb\rc"));
         let hidden = decode("a", b"ab\xe2\xf3\0").unwrap_err();
         assert_eq!(hidden.location().column, 5);
         assert!(!format!("{hidden:?}").contains("ab"), "{hidden:?}");

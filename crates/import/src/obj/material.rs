@@ -53,6 +53,12 @@ const OTHERS: [&str; 38] = [
     "Pmt",
 ];
 
+/// The field of [`MaterialDesc`] that a keyword gives, if it gives one.
+fn field_of(keyword: &str) -> Option<&'static str> {
+    let fields = [("Ka", "ambient"), ("Kd", "diffuse"), ("Ks", "specular"), ("Ns", "exponent")];
+    fields.into_iter().find(|(known, _)| *known == keyword).map(|(_, field)| field)
+}
+
 /// Unknown keywords that are worth a warning each.
 const MAX_UNKNOWN: usize = 16;
 
@@ -140,8 +146,9 @@ impl Library {
         self.source.fault(span, message)
     }
 
-    /// A fault about a field of a material, or another keyword of it.
+    /// A fault about a field of a material, or a keyword of it.
     pub(crate) fn field_fault(&self, material: &str, field: &str, message: &str) -> Fault {
+        let field = field_of(field).unwrap_or(field);
         let span = self.get(material).map_or(0..0, |material| {
             let mut given = material.spans.iter().chain(&material.others);
             given.find(|(name, _)| *name == field).map_or(material.defined.clone(), |(_, span)| span.clone())
@@ -276,20 +283,16 @@ impl Parser<'_> {
                 self.warn(span, "map_Kd names no file");
             }
         } else if let Some(numbers) = numbers(self.source, self.report, value, span.clone()) {
-            let field = match keyword {
-                "Ka" => "ambient",
-                "Kd" => "diffuse",
-                "Ks" => "specular",
-                _ => "exponent",
-            };
-            match field {
-                "ambient" => material.desc.ambient = numbers,
-                "diffuse" => material.desc.diffuse = numbers,
-                "specular" => material.desc.specular = numbers,
+            match keyword {
+                "Ka" => material.desc.ambient = numbers,
+                "Kd" => material.desc.diffuse = numbers,
+                "Ks" => material.desc.specular = numbers,
                 _ => material.desc.exponent = numbers.x,
             }
-            material.spans.retain(|(name, _)| *name != field);
-            material.spans.push((field, span));
+            if let Some(field) = field_of(keyword) {
+                material.spans.retain(|(name, _)| *name != field);
+                material.spans.push((field, span));
+            }
         }
         self.current = Some(material);
     }
@@ -359,6 +362,11 @@ mod tests {
         warned("newmtl a\nmap_Kd -clamp on\n", "m.mtl:2:1: map_Kd names no file");
         let failed =
             |text: &str, message: &str| assert!(library(text).1[0].contains(message), "{text}: {:?}", library(text).1);
+        warned("newmtl a\nKd .3 .2\nNs 3 4\n", "m.mtl:2:1: `Kd` has 2 numbers instead of 1 or 3: 0.3 is used for blue");
+        warned(
+            "newmtl a\nKs 0 -1e99 0\n",
+            "m.mtl:2:6: `-1e99` is too large for a 32-bit number: -3.4028235e38 is used",
+        );
         failed("newmtl a\nKd 1 nan 1\n", "m.mtl:2:6: `nan` is not a number");
         failed("newmtl a\n Ns\n", "m.mtl:2:2: the value is missing");
     }

@@ -1,7 +1,7 @@
 //! The statements of an MTL file, and their numbers.
 
-use crate::lines::{ends_in_comment, length_without_comment};
-use crate::number::{NUMBER_EXAMPLE, parse_number};
+use crate::lines::{continuation, length_without_comment};
+use crate::number::{NUMBER_EXAMPLE, NumberError, parse_number};
 use crate::report::Report;
 use crate::source::Source;
 use glam::{Mat3, Vec3};
@@ -22,8 +22,7 @@ pub(super) fn statements(text: &str) -> impl Iterator<Item = Range<usize>> {
         while let Some(length) = text[end..].split_inclusive('\n').next().map(str::len) {
             let line = &text[end..end + length];
             end += length;
-            let content = line.trim_end_matches(['\n', '\r']);
-            if !content.ends_with('\\') || ends_in_comment(content) {
+            if continuation(line).is_none() {
                 break;
             }
         }
@@ -39,8 +38,11 @@ fn number_words(value: &str) -> impl Iterator<Item = &str> {
     words.map(|word| word.trim_end_matches('\\')).filter(|word| !word.is_empty())
 }
 
+/// Statements whose numbers are red, green and blue.
+const COLORS: [&str; 6] = ["Ka", "Kd", "Ks", "Ke", "Kt", "Tf"];
+
 /// Up to three numbers; one alone stands for all three, as the format has it. `value` is a part of the text, `span` that of the
-/// statement.
+/// statement. Numbers too large for 32 bits become the largest there is, with a warning.
 pub(super) fn numbers(source: &Source<'_>, report: &mut Report, value: &str, span: Range<usize>) -> Option<Vec3> {
     let mut words = number_words(value).peekable();
     match words.peek().copied() {
@@ -72,23 +74,37 @@ fn color<'v>(
     let mut numbers = [0.0; 3];
     let mut count = 0;
     for word in words.take(3) {
-        match parse_number(word) {
-            Ok(number) => numbers[count] = number,
+        let start = word.as_ptr() as usize - source.text().as_ptr() as usize;
+        let place = |message: &str| source.fault(start..start + word.len(), message);
+        numbers[count] = match parse_number(word) {
+            Ok(number) => number,
+            Err(error @ NumberError::TooLarge) => {
+                let used = if word.starts_with('-') { f32::MIN } else { f32::MAX };
+                report.warn(|| place(&format!("{}: {used:e} is used", error.message(word))));
+                used
+            }
             Err(error) => {
-                let start = word.as_ptr() as usize - source.text().as_ptr() as usize;
-                let message = error.message(word);
-                report.error(|| source.fault(start..start + word.len(), &message).expected(NUMBER_EXAMPLE));
+                report.error(|| place(&error.message(word)).expected(NUMBER_EXAMPLE));
                 return None;
             }
-        }
+        };
         count += 1;
     }
+    let [first, second, third] = numbers;
     match count {
         0 => {
             report.error(|| source.fault(span, "the value is missing").expected(NUMBER_EXAMPLE));
             None
         }
-        3 => Some(Vec3::from_array(numbers)),
-        _ => Some(Vec3::new(numbers[0], if count == 2 { numbers[1] } else { numbers[0] }, numbers[0])),
+        1 => Some(Vec3::splat(first)),
+        2 => {
+            let keyword = source.text()[span.clone()].split_ascii_whitespace().next().unwrap_or_default();
+            if COLORS.contains(&keyword) {
+                let message = format!("`{keyword}` has 2 numbers instead of 1 or 3: {first} is used for blue as well");
+                report.warn(|| source.fault(span, &message));
+            }
+            Some(Vec3::new(first, second, first))
+        }
+        _ => Some(Vec3::new(first, second, third)),
     }
 }

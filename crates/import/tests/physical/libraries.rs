@@ -39,8 +39,53 @@ fn values_that_make_no_sense_are_errors() {
         memory(&text, &[("m.obj", model.as_bytes()), ("m.mtl", library)]).expect_err("it is broken").to_string()
     };
     assert!(error(b"newmtl a\nKe x").starts_with("m.mtl:2:4: `x` is not a number"), "{}", error(b"newmtl a\nKe x"));
-    assert!(error(b"newmtl a\nKd -1 0 0").starts_with("m.mtl:2:1: albedo is [-1, 0, 0]"));
-    assert!(error(b"newmtl a\nKe -1 0 0").starts_with("m.mtl:2:1: radiance is [-1, 0, 0]"));
+    assert!(error(b"newmtl a\nKd -1 0 nan").starts_with("m.mtl:2:9: `nan` is not a number"));
+}
+
+/// Each value in turn, with those of all writers: what is out of range is warned about once, where it is, and clamped.
+#[test]
+fn values_out_of_range_are_clamped_with_a_warning() {
+    for (text, warning) in [
+        ("Kd -1 0 0", "`Kd` of the material `a` is [-1, 0, 0]: [0, 0, 0] is used"),
+        ("Ks 0.5 -0.25 0", "`Ks` of the material `a` is [0.5, -0.25, 0]: [0.5, 0, 0] is used"),
+        ("Ke 3 -1 0", "`Ke` of the material `a` is [3, -1, 0]: [3, 0, 0] is used"),
+        ("Ke 3 1e16 0", "`Ke` of the material `a` is [3, 10000000000000000, 0]: [3, 1000000000000000, 0] is used"),
+        ("Tr -0.5", "`Tr` of the material `a` is -0.5: 0 is used"),
+        ("d 1.5", "`d` of the material `a` is 1.5: 1 is used"),
+        ("Kd 0.3 0.2", "`Kd` has 2 numbers instead of 1 or 3: 0.3 is used for blue as well"),
+        ("Ke 0.3 0.2", "`Ke` has 2 numbers instead of 1 or 3: 0.3 is used for blue as well"),
+        ("Kd 0\nillum 4\nPr -1", "`Pr` of the material `a` is -1: 0 is used"),
+        ("Kd 2 1 -1\nPr 0.5", "`Kd` of the material `a` is [2, 1, -1]: [2, 1, 0] is used"),
+    ] {
+        let (scene, warnings) = library(text);
+        assert_eq!(scene.validate(), []);
+        let found = warnings.iter().filter(|found| found.ends_with(warning)).count();
+        assert_eq!(found, 1, "{text}: {warnings:?}");
+        let line = 2 + text.lines().count() - 1;
+        assert!(warnings[0].starts_with(&format!("m.mtl:{line}:1: ")) || text.contains("Pr 0"), "{warnings:?}");
+    }
+    assert_eq!(
+        scattering("Kd 0.2 0.1 0.3\nd 1\nTr 0"),
+        Scattering::Lambert { albedo: Vec3::new(0.2, 0.1, 0.3).into() }
+    );
+    let (scene, warnings) = of_blender("Kd 1.5 0 0\nKs -1\nNs 2000\nTf -1\nKa 7\nNi 1.5\nillum 3");
+    assert_eq!((scene.validate().len(), warnings.len()), (0, 5), "{warnings:?}");
+}
+
+/// Whatever the numbers of a statement, a library makes a scene that can be rendered.
+#[test]
+fn no_number_refuses_a_scene() {
+    let numbers = ["-1e99", "-3e38", "-1", "-0", "1e-40", "0.5", "2", "1e15", "3e38", "1e400"];
+    let keywords = ["Kd", "Ks", "Ke", "Ka", "Ns", "Ni", "d", "Tr", "Tf", "Pr", "Pm", "illum", "Kd xyz", "Ke xyz"];
+    for (i, number) in numbers.iter().enumerate() {
+        for keyword in keywords {
+            let values = format!("{keyword} {number} {} {number}", numbers[(i + 3) % numbers.len()]);
+            for rest in ["", "illum 5\nKd 0\n", "illum 7\nKd 0\n", "Pm 0.5\n"] {
+                assert_eq!(library(&format!("{rest}{values}")).0.validate(), [], "{rest}{values}");
+            }
+            assert_eq!(of_blender(&format!("illum 3\nTf 0.5\n{values}")).0.validate(), [], "{values}");
+        }
+    }
 }
 
 #[test]
@@ -80,7 +125,7 @@ fn no_legal_value_refuses_a_scene() {
         (format!("{glass} 9\nNi 0.001"), 1),
         ("d -halo 1.0".to_owned(), 1),
         ("d -halo 0.7".to_owned(), 2),
-        ("d 1.5\nTr 0".to_owned(), 0),
+        ("d 1.5\nTr 0".to_owned(), 1),
         ("Kd 0.2\nKs 0.2\nNs -5".to_owned(), 1),
         ("Kd 0.2\nKs 0.2\nNs 1e7".to_owned(), 1),
         ("Kd xyz 0.2 0.3 0.1\nKs xyz 0.1\nTf spectral x.rfl\nsharpness 60\nmap_aat on".to_owned(), 0),

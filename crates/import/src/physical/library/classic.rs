@@ -2,7 +2,7 @@
 //!
 //! L. Ramey, L. Rose, L. Tyerman, "MTL material format (Lightwave, OBJ)", 1995.
 
-use super::Converter;
+use super::{Converter, SHARE};
 use glam::Vec3;
 use lightcuts_scene::physical::{Scattering, Tint};
 
@@ -34,7 +34,7 @@ impl Converter<'_, '_> {
             _ => {}
         }
         let has_highlight = !model.is_some_and(|model| MATT.contains(&model));
-        let specular = if has_highlight { self.found.desc.specular } else { Vec3::ZERO };
+        let specular = if has_highlight { self.specular() } else { Vec3::ZERO };
         let scale = self.scale(diffuse.color, specular);
         let diffuse = Tint { color: diffuse.color * scale, ..diffuse };
         if specular == Vec3::ZERO {
@@ -50,8 +50,7 @@ impl Converter<'_, '_> {
     }
 
     fn mirror(&mut self) -> Scattering {
-        let given = self.found.gives("specular").then_some(self.found.desc.specular);
-        let reflectance = given.unwrap_or(Vec3::ONE);
+        let reflectance = if self.found.gives("specular") { self.specular() } else { Vec3::ONE };
         let scale = self.scale(Vec3::ZERO, reflectance);
         Scattering::Mirror { reflectance: (reflectance * scale).into() }
     }
@@ -62,26 +61,19 @@ impl Converter<'_, '_> {
             self.warn("Ni", &format!("glass of index 1 refracts nothing: `{name}` is taken as opaque and black"));
             return Scattering::Lambert { albedo: Vec3::ZERO.into() };
         };
-        let given = self.color("Tf").unwrap_or(Vec3::ONE);
-        let transmittance = given.clamp(Vec3::ZERO, Vec3::ONE);
-        if transmittance != given {
-            let name = &self.found.desc.name;
-            self.warn("Tf", &format!("`Tf` of the material `{name}` is {given}: {transmittance} is used"));
-        }
-        let roughness = self.number("Pr").unwrap_or(0.0).clamp(0.0, 1.0);
+        let transmittance = self.color("Tf").unwrap_or(Vec3::ONE);
+        let transmittance = self.color_within("Tf", transmittance, SHARE);
+        let roughness = self.number("Pr").unwrap_or(0.0);
+        let roughness = self.within("Pr", roughness, SHARE);
         Scattering::Dielectric { ior, roughness, transmittance }
     }
 
     fn exponent(&mut self) -> f32 {
         let (least, greatest) = EXPONENTS;
         let exponent = self.found.desc.exponent;
+        let used = exponent.clamp(least, greatest);
         // 0 to 1 is common, and next to 1.
-        if !(0.0..=greatest).contains(&exponent) {
-            let (name, used) = (&self.found.desc.name, exponent.clamp(least, greatest));
-            let message = format!("`Ns` of the material `{name}` is {exponent}: {used} is used");
-            self.warn_at("exponent", &message);
-        }
-        exponent.clamp(least, greatest)
+        if (0.0..=least).contains(&exponent) { used } else { self.used("Ns", exponent, used) }
     }
 
     /// Factor that keeps `Kd` and `Ks` together at 1 at most: no surface reflects more light than falls on it.
@@ -92,20 +84,14 @@ impl Converter<'_, '_> {
         }
         let scale = sum.recip();
         let name = &self.found.desc.name;
-        let (field, what) = match (diffuse == Vec3::ZERO, specular == Vec3::ZERO) {
-            (true, _) => ("specular", "`Ks` is"),
-            (_, true) => ("diffuse", "`Kd` is"),
-            _ => ("specular", "`Kd` and `Ks` together are"),
+        let (keyword, what) = match (diffuse == Vec3::ZERO, specular == Vec3::ZERO) {
+            (true, _) => ("Ks", "`Ks` is"),
+            (_, true) => ("Kd", "`Kd` is"),
+            _ => ("Ks", "`Kd` and `Ks` together are"),
         };
         let message =
             format!("{what} {sum:.4} in the material `{name}`, more than all light: multiplied by {scale:.4}");
-        self.warn_at(field, &message);
+        self.warn(keyword, &message);
         scale
-    }
-
-    /// A warning at a field that both models read.
-    fn warn_at(&mut self, field: &str, message: &str) {
-        let (library, name) = (self.library, &self.found.desc.name);
-        self.builder.reader.report.warn(|| library.field_fault(name, field, message));
     }
 }

@@ -1,7 +1,7 @@
 //! Maps of MTL materials: images with their options.
 
 use super::super::image::ImageUse;
-use super::{BUMPS, Converter, NORMALS};
+use super::{BUMPS, Converter, LIGHT, NORMALS};
 use glam::Vec3;
 use lightcuts_scene::TextureMode;
 use lightcuts_scene::physical::{ImageId, Tint};
@@ -13,7 +13,8 @@ impl Converter<'_, '_> {
     pub(super) fn base_color(&mut self) -> Tint {
         let image = self.found.texture.clone().and_then(|span| self.image("map_Kd", span, ImageUse::Color));
         let is_map_alone = image.is_some() && !self.found.gives("diffuse");
-        Tint { color: if is_map_alone { Vec3::ONE } else { self.found.desc.diffuse }, image }
+        let color = if is_map_alone { Vec3::ONE } else { self.color_within("Kd", self.found.desc.diffuse, LIGHT) };
+        Tint { color, image }
     }
 
     pub(super) fn map(&mut self, keyword: &'static str, wanted: ImageUse) -> Option<ImageId> {

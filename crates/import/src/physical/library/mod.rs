@@ -17,6 +17,7 @@ use glam::Vec3;
 use lightcuts_scene::physical::{
     AlphaMask, EmissionDesc, ImageId, PixelImage, Pixels, Scattering, SurfaceDesc, SurfaceId,
 };
+use std::fmt::Display;
 use std::rc::Rc;
 
 /// Keywords that are used, or that say nothing which would be missed.
@@ -39,6 +40,12 @@ const BUMPS: [&str; 3] = ["map_Bump", "map_bump", "bump"];
 /// Least and greatest refractive index of glass and coats, and how near to 1 nothing is refracted.
 const IORS: (f32, f32) = (1.0 / 3.0, 3.0);
 const MIN_CONTRAST: f32 = 2e-3;
+
+/// Shares of light, roughness and the like.
+const SHARE: (f32, f32) = (0.0, 1.0);
+
+/// Radiances, and reflectances before they are scaled down to what a surface can reflect.
+const LIGHT: (f32, f32) = (0.0, 1e15);
 
 /// A material that was added to the scene.
 #[derive(Debug, Clone, Copy)]
@@ -90,6 +97,7 @@ impl Converter<'_, '_> {
     fn emission(&mut self) -> Option<EmissionDesc> {
         let image = self.map("map_Ke", ImageUse::Color);
         let radiance = self.color("Ke").or(image.map(|_| Vec3::ONE))?;
+        let radiance = self.color_within("Ke", radiance, LIGHT);
         let two_sided = self.is_of_blender();
         (radiance != Vec3::ZERO).then_some(EmissionDesc { radiance, image, two_sided })
     }
@@ -105,13 +113,14 @@ impl Converter<'_, '_> {
         if let Some(image) = self.map("map_d", ImageUse::Data) {
             return Some(AlphaMask { image, threshold: THRESHOLD });
         }
-        let opacity = self.number("d").or_else(|| self.number("Tr").map(|transparency| 1.0 - transparency))?;
+        let (keyword, value) = ["d", "Tr"].into_iter().find_map(|keyword| Some((keyword, self.number(keyword)?)))?;
+        let value = self.within(keyword, value, SHARE);
+        let opacity = if keyword == "d" { value } else { 1.0 - value };
         // Of glass it is part of what makes it glass.
         let is_glass = !self.is_of_blender() && matches!(scattering, Scattering::Dielectric { .. });
         if opacity >= 1.0 || is_glass {
             return None;
         }
-        let keyword = if self.found.other("d").is_some() { "d" } else { "Tr" };
         let is_there = opacity >= THRESHOLD;
         let told = if is_there { "opaque" } else { "left out" };
         self.warn(
@@ -148,9 +157,23 @@ impl Converter<'_, '_> {
         known
     }
 
+    /// `Ks`, as much as a scene may have.
+    fn specular(&mut self) -> Vec3 {
+        self.color_within("Ks", self.found.desc.specular, LIGHT)
+    }
+
     /// A value within a range that the renderer can have; others are warned about.
-    fn within(&mut self, keyword: &'static str, value: f32, (least, greatest): (f32, f32)) -> f32 {
-        let used = value.clamp(least, greatest);
+    fn within(&mut self, keyword: &str, value: f32, (least, greatest): (f32, f32)) -> f32 {
+        self.used(keyword, value, value.clamp(least, greatest))
+    }
+
+    /// The same for each channel.
+    fn color_within(&mut self, keyword: &str, value: Vec3, (least, greatest): (f32, f32)) -> Vec3 {
+        self.used(keyword, value, value.clamp(Vec3::splat(least), Vec3::splat(greatest)))
+    }
+
+    /// What is used in place of a value, with a warning if it is another one.
+    fn used<T: PartialEq + Display>(&mut self, keyword: &str, value: T, used: T) -> T {
         if used != value {
             let name = &self.found.desc.name;
             self.warn(keyword, &format!("`{keyword}` of the material `{name}` is {value}: {used} is used"));
@@ -189,9 +212,9 @@ impl Converter<'_, '_> {
         }
     }
 
-    /// A warning at the line of a keyword that the thesis' model has no use for.
+    /// A warning at the line of a keyword.
     fn warn(&mut self, keyword: &str, message: &str) {
-        let span = self.found.other(keyword).unwrap_or_default();
-        self.builder.reader.report.warn(|| self.library.fault(span, message));
+        let (library, name) = (self.library, &self.found.desc.name);
+        self.builder.reader.report.warn(|| library.field_fault(name, keyword, message));
     }
 }

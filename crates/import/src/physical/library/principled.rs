@@ -4,7 +4,7 @@
 //! Without "PBR extensions" `Ns` stands for the roughness, and `illum` 3 for a metal.
 
 use super::super::metal::Metal;
-use super::{Converter, IORS, MIN_CONTRAST};
+use super::{Converter, IORS, MIN_CONTRAST, SHARE};
 use crate::obj::Writer;
 use glam::Vec3;
 use lightcuts_scene::physical::{Scattering, SurfaceDesc, Tint};
@@ -22,10 +22,11 @@ const MAX_EXPONENT: f32 = 1e6;
 impl Converter<'_, '_> {
     pub(super) fn principled(&mut self) -> Scattering {
         let base = self.base_color();
-        let base = Tint { color: base.color.clamp(Vec3::ZERO, Vec3::ONE), ..base };
+        let base = Tint { color: self.color_within("Kd", base.color, SHARE), ..base };
         let roughness = self.roughness();
         let coated = self.coated(base, roughness);
         let transmission = if self.is_of_blender() { self.number("Tf").unwrap_or(0.0) } else { 0.0 };
+        let transmission = self.within("Tf", transmission, SHARE);
         let body = match self.refracting(base, roughness, transmission) {
             Some(glass) => self.mixed(coated, glass, transmission),
             None => coated,
@@ -40,12 +41,12 @@ impl Converter<'_, '_> {
 
     fn roughness(&mut self) -> f32 {
         if let Some(roughness) = self.number("Pr") {
-            return self.within("Pr", roughness, (0.0, 1.0));
+            return self.within("Pr", roughness, SHARE);
         }
         match self.library.writer() {
             Writer::Blender { greatest_exponent } if self.found.gives("exponent") => {
-                let share = (self.found.desc.exponent / greatest_exponent).clamp(0.0, 1.0);
-                1.0 - share.sqrt()
+                let exponent = self.within("Ns", self.found.desc.exponent, (0.0, greatest_exponent));
+                1.0 - (exponent / greatest_exponent).sqrt()
             }
             _ => ROUGHNESS,
         }
@@ -53,21 +54,24 @@ impl Converter<'_, '_> {
 
     fn metalness(&mut self) -> f32 {
         if let Some(metalness) = self.number("Pm") {
-            return self.within("Pm", metalness, (0.0, 1.0));
+            return self.within("Pm", metalness, SHARE);
         }
         let is_metal = self.is_of_blender() && self.illumination().is_some_and(|model| METALS.contains(&model));
         // Blender writes the metalness as ambient colour then.
-        let given = self.found.gives("ambient").then_some(self.found.desc.ambient.x);
-        if is_metal { given.unwrap_or(1.0).clamp(0.0, 1.0) } else { 0.0 }
+        match (is_metal, self.found.gives("ambient")) {
+            (true, true) => self.within("Ka", self.found.desc.ambient.x, SHARE),
+            (true, false) => 1.0,
+            (false, _) => 0.0,
+        }
     }
 
     /// Diffuse under a coat; without one where the coat would reflect nothing.
     fn coated(&mut self, base: Tint, roughness: f32) -> Scattering {
-        let blender = self.is_of_blender() && self.found.gives("specular");
-        let level = if blender { self.found.desc.specular.max_element() } else { SPECULAR_LEVEL };
+        let is_given = self.is_of_blender() && self.found.gives("specular");
+        let level = if is_given { self.specular().max_element() } else { SPECULAR_LEVEL };
         let ior = self.ior().unwrap_or(1.0);
         // The level scales the reflectance at normal incidence: F0 = 2 level ((n - 1) / (n + 1))^2.
-        let root = ((ior - 1.0) / (ior + 1.0)).abs() * (2.0 * level).max(0.0).sqrt();
+        let root = ((ior - 1.0) / (ior + 1.0)).abs() * (2.0 * level).sqrt();
         let root = root.min((IORS.1 - 1.0) / (IORS.1 + 1.0));
         let ior = ((1.0 + root) / (1.0 - root)).min(IORS.1);
         if ior - 1.0 < MIN_CONTRAST {
