@@ -66,7 +66,11 @@ pub(crate) fn decode(
     limits: &PictureLimits,
     wanted: impl Fn(&str) -> bool,
 ) -> Result<Decoded, ImageError> {
-    guarded(path, || decode_part(path, bytes, part, limits, wanted))
+    guarded(path, || {
+        let reader = reader(path, bytes)?;
+        check_parts(path, reader.headers(), part, bytes.len(), limits)?;
+        decode_part(path, reader, part, wanted)
+    })
 }
 
 fn reader<'a>(path: &Path, bytes: &'a [u8]) -> Result<Reader<Cursor<&'a [u8]>>, ImageError> {
@@ -74,17 +78,14 @@ fn reader<'a>(path: &Path, bytes: &'a [u8]) -> Result<Reader<Cursor<&'a [u8]>>, 
     Reader::read_from_buffered(Cursor::new(bytes), PEDANTIC).map_err(malformed)
 }
 
+/// The part of a file whose headers were checked.
 fn decode_part(
     path: &Path,
-    bytes: &[u8],
+    reader: Reader<Cursor<&[u8]>>,
     part: usize,
-    limits: &PictureLimits,
     wanted: impl Fn(&str) -> bool,
 ) -> Result<Decoded, ImageError> {
     let malformed = |error: exr::error::Error| ImageError::malformed(path, error.to_string());
-    let reader = reader(path, bytes)?;
-    check_parts(path, reader.headers(), part, bytes.len(), limits)?;
-
     let is_wanted = |block: &BlockIndex| block.layer == part && block.level.0 == 0 && block.level.1 == 0;
     let mut expected = 0;
     let chunks = reader.filter_chunks(PEDANTIC, |_, _, block| {

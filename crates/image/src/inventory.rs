@@ -57,7 +57,7 @@ pub fn picture_inventory(path: impl AsRef<Path>) -> Result<Inventory, ImageError
     let (frame, channels, remarks) = if let Some(light) = decode_light(path, &bytes, &LightOptions::default()) {
         light.map(|light| (light.frame, light.channels, light.remarks))?
     } else {
-        let png = decode_png(path, &bytes)?;
+        let png = decode_png(path, &bytes, &PictureLimits::default())?;
         (Frame::whole(png.codes.width(), png.codes.height()), png.channels, Vec::new())
     };
     let kind = if channels.without_alpha() == Channels::Grey { "grey" } else { "color" };

@@ -97,7 +97,7 @@ fn encoded(image: &Image, transfer: Transfer) -> image::ImageResult<Vec<u8>> {
 pub fn read_png(path: impl AsRef<Path>, transfer: Transfer) -> Result<Image, ImageError> {
     let path = path.as_ref();
     let bytes = fs::read(path).map_err(|source| ImageError::io("read", path, source))?;
-    let codes = decode_png(path, &bytes)?.codes;
+    let codes = decode_png(path, &bytes, &PictureLimits::default())?.codes;
     Ok(codes.map(|pixel| pixel.map(|code| transfer.decode(code))))
 }
 
@@ -111,8 +111,8 @@ pub(crate) struct Decoded {
     pub(crate) is_16_bit: bool,
 }
 
-/// Decodes the bytes of a PNG; fails as [`read_png`] does.
-pub(crate) fn decode_png(path: &Path, bytes: &[u8]) -> Result<Decoded, ImageError> {
+/// Decodes the bytes of a PNG; fails as [`read_png`] does, and beyond `limits`.
+pub(crate) fn decode_png(path: &Path, bytes: &[u8], limits: &PictureLimits) -> Result<Decoded, ImageError> {
     let malformed = |error: image::ImageError| ImageError::malformed(path, error.to_string());
     let decoder = PngDecoder::new(Cursor::new(bytes)).map_err(malformed)?;
     let (width, height) = decoder.dimensions();
@@ -125,7 +125,7 @@ pub(crate) fn decode_png(path: &Path, bytes: &[u8]) -> Result<Decoded, ImageErro
         expansion: 8 * MAX_EXPANSION,
         file_bytes: bytes.len(),
     };
-    claim.check(path, &PictureLimits::default())?;
+    claim.check(path, limits)?;
     let picture = DynamicImage::from_decoder(decoder).map_err(malformed)?;
     let is_16_bit = color.bytes_per_pixel() / color.channel_count() == 2;
     // Divided here, so that grey and colour of one code value are one number.
@@ -208,11 +208,28 @@ mod tests {
         let (_directory, path) = scratch();
         write_png(&path, &Image::filled(9, 9, [0.3; 3]), Transfer::Linear).unwrap();
         let whole = fs::read(&path).unwrap();
-        let mut huge = whole.clone();
-        huge[16..24].copy_from_slice(&[0, 0, 0x80, 0, 0, 0, 0x80, 0]); // 32,768 x 32,768; its CRC is wrong as well
-        for bytes in [&whole[..whole.len() / 2], &huge, b"", b"GIF89a"] {
+        let mut other_size = whole.clone();
+        other_size[19] = 8; // 8 x 9: the CRC of the header is wrong then
+        for bytes in [&whole[..whole.len() / 2], &other_size, b"", b"GIF89a"] {
             fs::write(&path, bytes).unwrap();
             assert!(read_png(&path, Transfer::Linear).unwrap_err().to_string().contains("a.png"));
+        }
+    }
+
+    #[test]
+    fn a_file_beyond_the_limits_is_refused() {
+        let bytes = encoded(&Image::filled(9, 7, [0.3; 3]), Transfer::Linear).unwrap();
+        let read = |limits| decode_png(Path::new("a.png"), &bytes, &limits);
+        let any = PictureLimits::default();
+        assert!(read(PictureLimits { side: 9, pixels: 63, bytes: 63 * 12 }).is_ok());
+        let cases = [
+            (PictureLimits { side: 8, ..any }, "at most 8 x 8"),
+            (PictureLimits { pixels: 62, ..any }, "more than the limit of 62"),
+            (PictureLimits { bytes: 755, ..any }, "there is room for 755 only"),
+        ];
+        for (limits, expected) in cases {
+            let error = read(limits).err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(error.starts_with("cannot read a.png: 9 x 7 pixels") && error.contains(expected), "{error}");
         }
     }
 }

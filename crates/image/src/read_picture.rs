@@ -97,7 +97,7 @@ pub fn read_picture(
     let options = LightOptions { layer, ..LightOptions::default() };
     match decode_light(path, &bytes, &options) {
         Some(light) => light.map(|light| of_light(light, format, transfer)),
-        None => decode_png(path, &bytes).map(|png| of_codes(png, transfer)),
+        None => decode_png(path, &bytes, &options.limits).map(|png| of_codes(png, transfer)),
     }
 }
 

@@ -17,6 +17,13 @@ pub(crate) enum AssetError {
     Content { what: &'static str, name: String, reason: String },
 }
 
+impl AssetError {
+    /// What was expected, if it is no other file: `example` then says what a file can be. The other messages say it themselves.
+    pub(crate) fn expected(&self, example: &'static str) -> &'static str {
+        if matches!(self, Self::NotFound { .. }) { example } else { "" }
+    }
+}
+
 /// Opens what a scene names and keeps track of it.
 pub(crate) struct Files<'a> {
     resolver: &'a dyn Resolver,

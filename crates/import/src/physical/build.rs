@@ -177,6 +177,9 @@ impl<'d> Builder<'d> {
                 self.reader.report.error(|| self.places.fault(&issue, self.reader.source));
             }
         }
+        if !self.reader.report.has_errors() {
+            self.warn_of_large_spheres();
+        }
         let warnings = self.reader.report.finish()?;
         Ok(Imported { scene: self.scene, warnings, files: self.files.opened })
     }

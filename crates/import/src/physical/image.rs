@@ -18,7 +18,7 @@ const FILES: &str = "a PNG, JPEG, EXR, HDR or PFM file beside the scene or in a 
 #[derive(Debug, Default)]
 pub(super) struct Images {
     /// By the identity of their files; why not, for those that cannot be read.
-    known: HashMap<PathBuf, Result<Uses, String>>,
+    known: HashMap<PathBuf, Result<Uses, Refusal>>,
     /// What all of them take in memory.
     bytes: u64,
 }
@@ -29,6 +29,20 @@ struct Uses {
     color: Option<ImageId>,
     data: Option<ImageId>,
     has_alpha: bool,
+}
+
+/// Why a file is no image.
+#[derive(Debug, Clone)]
+pub(super) struct Refusal {
+    pub(super) message: String,
+    /// To follow the word "expected"; may be empty.
+    expected: &'static str,
+}
+
+impl From<AssetError> for Refusal {
+    fn from(error: AssetError) -> Self {
+        Self { message: error.to_string(), expected: error.expected(FILES) }
+    }
 }
 
 /// An image, and what is to be said of it at its first use.
@@ -54,8 +68,8 @@ impl Images {
         list: &mut Vec<PixelImage>,
         (name, beside): (&str, Option<&Path>),
         wanted: ImageUse,
-    ) -> Result<Found, String> {
-        let path = files.find("image", name, beside).map_err(|error| error.to_string())?;
+    ) -> Result<Found, Refusal> {
+        let path = files.find("image", name, beside)?;
         let identity = files.identity(&path);
         let mut uses = match self.known.get(&identity) {
             Some(known) => known.clone()?,
@@ -77,7 +91,7 @@ impl Images {
         (name, path): (&str, &Path),
         uses: &mut Uses,
         wanted: ImageUse,
-    ) -> Result<Found, String> {
+    ) -> Result<Found, Refusal> {
         let there = uses.color.or(uses.data).and_then(|id| list.get(id.0 as usize));
         let codes = there.and_then(|image| match &image.pixels {
             Pixels::Srgb(texels) | Pixels::Linear(texels) => Some((image.width, image.height, texels.clone())),
@@ -97,13 +111,16 @@ impl Images {
         Ok(Found { id, remarks })
     }
 
-    fn decode(&self, files: &mut Files<'_>, name: &str, path: &Path, wanted: ImageUse) -> Result<Decoded, String> {
+    fn decode(&self, files: &mut Files<'_>, name: &str, path: &Path, wanted: ImageUse) -> Result<Decoded, Refusal> {
         let limits = files.limits;
-        let bytes = files.read("image", path, limits.texture_bytes).map_err(|error| error.to_string())?;
+        let bytes = files.read("image", path, limits.texture_bytes)?;
         let bounds = Bounds { side: limits.texture_side, bytes: limits.image_bytes.saturating_sub(self.bytes) };
-        texture::decode(&bytes, bounds, wanted).map_err(|error| {
-            AssetError::Content { what: "image", name: name.to_owned(), reason: error.to_string() }.to_string()
-        })
+        let decoded = texture::decode(&bytes, bounds, wanted).map_err(|error| AssetError::Content {
+            what: "image",
+            name: name.to_owned(),
+            reason: error.to_string(),
+        });
+        Ok(decoded?)
     }
 
     fn push_file(
@@ -138,9 +155,10 @@ impl Images {
         files: &Files<'_>,
         list: &mut Vec<PixelImage>,
         image: PixelImage,
-    ) -> Result<ImageId, String> {
+    ) -> Result<ImageId, Refusal> {
         if self.bytes.saturating_add(size(&image.pixels)) > files.limits.image_bytes {
-            return Err(format!("the images take more than {} bytes of memory", files.limits.image_bytes));
+            let message = format!("the images take more than {} bytes of memory", files.limits.image_bytes);
+            return Err(Refusal { message, expected: "fewer or smaller images" });
         }
         Ok(self.push(list, image))
     }
@@ -174,12 +192,13 @@ fn pixels(mut texels: Vec<[u8; 4]>, has_alpha: bool, wanted: ImageUse) -> Pixels
 }
 
 /// Light with nothing in it that cannot be: what is a little below zero, as filters leave it, is 0.
-fn checked(name: &str, mut decoded: Decoded) -> Result<Decoded, String> {
+fn checked(name: &str, mut decoded: Decoded) -> Result<Decoded, Refusal> {
     if let Texels::Light(texels) = &mut decoded.texels {
         let bad = texels.iter().position(|texel| !texel.iter().all(|value| value.is_finite()));
         if let Some(i) = bad {
             let (row, column) = (i as u32 / decoded.width + 1, i as u32 % decoded.width + 1);
-            return Err(format!("the image `{name}` holds {:?} in row {row}, column {column}", texels[i]));
+            let message = format!("the image `{name}` holds {:?} in row {row}, column {column}", texels[i]);
+            return Err(Refusal { message, expected: "finite numbers" });
         }
         texels.iter_mut().flatten().for_each(|value| *value = value.max(0.0));
     }
@@ -212,8 +231,8 @@ impl Builder<'_> {
         let source = self.reader.source;
         match self.image_named(&name, None, wanted, || source.fault(value.span(), "")) {
             Ok(id) => Some(id),
-            Err(message) => {
-                self.reader.error(value.span(), &message, FILES);
+            Err(Refusal { message, expected }) => {
+                self.reader.error(value.span(), &message, expected);
                 None
             }
         }
@@ -226,7 +245,7 @@ impl Builder<'_> {
         beside: Option<&Path>,
         wanted: ImageUse,
         place: impl FnOnce() -> Fault,
-    ) -> Result<ImageId, String> {
+    ) -> Result<ImageId, Refusal> {
         let found = self.images.load(&mut self.files, &mut self.scene.images, (name, beside), wanted)?;
         if self.scene.images.len() > self.places.images.len() {
             let place = place();

@@ -39,6 +39,7 @@ mod metal;
 mod object;
 mod placement;
 mod places;
+mod proportion;
 mod reader;
 mod smoothing;
 mod value;

@@ -72,7 +72,9 @@ impl<'p> Outline<'p> {
     fn cut_off(mut self, work: &mut u64, triangles: &mut Vec<[u32; 3]>) -> bool {
         let mut kind = Kind::Clear;
         // First come, first cut off: what is left stays as round as it can.
-        let mut waiting: VecDeque<u32> = (0..self.points.len() as u32).collect();
+        let all = 0..self.points.len() as u32;
+        let (spikes, others): (Vec<u32>, Vec<u32>) = all.partition(|&i| self.is_spike(self.around(i)));
+        let mut waiting: VecDeque<u32> = spikes.into_iter().chain(others).collect();
         let (mut some_corner, mut has_cut) = (0, false);
         while self.left > 3 {
             let Some(corner) = waiting.pop_front() else {
@@ -95,7 +97,13 @@ impl<'p> Outline<'p> {
             if !self.is_cut[corner as usize] && self.is_ear(ear, kind, work) {
                 triangles.push(ear);
                 self.cut(ear);
-                waiting.extend([ear[0], ear[2]]);
+                for neighbour in [ear[0], ear[2]] {
+                    if self.is_spike(self.around(neighbour)) {
+                        waiting.push_front(neighbour);
+                    } else {
+                        waiting.push_back(neighbour);
+                    }
+                }
                 (some_corner, has_cut) = (ear[0], true);
             }
         }
@@ -117,7 +125,17 @@ impl<'p> Outline<'p> {
         }
     }
 
+    /// Whether two of three corners in a row are one point: what is left of a part of the outline that has been cut off. It goes
+    /// before anything else, for an ear beside it might reach across where the outline touches itself.
+    fn is_spike(&self, ear: [u32; 3]) -> bool {
+        let [a, b, c] = ear.map(|i| self.point(i));
+        a == b || b == c || c == a
+    }
+
     fn is_ear(&self, ear: [u32; 3], kind: Kind, work: &mut u64) -> bool {
+        if self.is_spike(ear) {
+            return true;
+        }
         let corners = ear.map(|i| self.point(i));
         let [a, b, c] = corners;
         let area = turn(a, b, c);

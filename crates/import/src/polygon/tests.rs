@@ -148,6 +148,38 @@ fn holes_with_a_bridge_stay_open() {
     }
 }
 
+/// Parts that meet in one corner only, which the outline passes once for each of them.
+#[test]
+fn outlines_that_touch_themselves_in_a_corner_are_covered() {
+    let mut numbers = Numbers(5);
+    let wings = flat(&[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0], [2.0, 2.0], [1.0, 1.0], [0.0, 2.0]]);
+    let (triangles, outcome, area, areas) = cut(&wings, Vec3::Z);
+    assert_eq!((triangles.len(), outcome, area, areas.iter().sum::<f64>()), (4, Outcome::Covered, 4.0, 4.0));
+    assert!(areas.iter().all(|area| *area >= 0.0), "{areas:?}");
+    for i in 0..300 {
+        let petals = 2 + numbers.below(5);
+        let at = |angle: f32, radius: f32| [radius * angle.cos(), radius * angle.sin()];
+        let wedge = std::f32::consts::TAU / petals as f32;
+        let mut corners = Vec::new();
+        for petal in 0..petals {
+            corners.push([0.0, 0.0]);
+            let count = 2 + numbers.below(4);
+            let angle = |k: usize| wedge * (petal as f32 + 0.1 + 0.7 * k as f32 / count as f32);
+            corners.extend((0..count).map(|k| at(angle(k), 0.3 + numbers.next())));
+        }
+        let mut corners = flat(&corners);
+        let count = corners.len();
+        corners.rotate_left(numbers.below(count));
+        if i % 2 == 1 {
+            corners.reverse();
+        }
+        let turn = Quat::from_euler(glam::EulerRot::XYZ, numbers.next(), numbers.next(), numbers.next());
+        assert_covers(&corners, &mut numbers, &format!("{i}: {corners:?}"));
+        let turned: Vec<Vec3> = corners.iter().map(|corner| turn * *corner).collect();
+        assert_eq!(cut(&turned, turn * Vec3::Z).1, Outcome::Covered, "{i}: {turned:?}");
+    }
+}
+
 #[test]
 fn polygons_in_space_are_cut_in_their_plane() {
     // A U of area 2.8, seen along each axis and across.

@@ -174,11 +174,6 @@ const FILE_LINES: &[(&str, &str, Expectation)] = &[
     ("directory-texture", "TEX:folder.obj", Error("is a directory", Some(3))),
     ("corrupt-png", "TEX:corrupt.png", Error("the texture `corrupt.png` cannot be decoded", Some(3))),
     ("truncated-jpeg", "TEX:truncated.jpg", Error("the texture `truncated.jpg` cannot be decoded", Some(3))),
-    (
-        "enormous-png",
-        "TEX:enormous.png",
-        Error("is 60000 x 60000 texels, but at most 16384 x 16384 are possible", Some(3)),
-    ),
     ("long-texture", "TEX:sparse.png", Error("has 8589934592 bytes; expected at most 268435456", Some(3))),
 ];
 
@@ -242,10 +237,6 @@ const COMPANIONS: &[(&str, &[u8])] = &[
     ("texture.mtl", b"newmtl a\nmap_Kd none.png\n"),
     ("corrupt.png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01"),
     ("truncated.jpg", b"\xff\xd8\xff\xe0\0\x10JFIF\0\x01\x01"),
-    (
-        "enormous.png",
-        b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xea\x60\0\0\xea\x60\x08\x02\0\0\0\x0f\xb0\xe2\x15\0\0\0\0IDAT\x35\xaf\x06\x1e",
-    ),
 ];
 
 /// Writes the scenes and their companions into an empty directory.

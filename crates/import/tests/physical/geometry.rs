@@ -49,6 +49,29 @@ fn concave_polygons_keep_their_outline() {
     assert!(warnings[0].starts_with("m.obj:5:1: 2 polygons cross themselves or have no area"), "{warnings:?}");
 }
 
+/// A ground that is a sphere, and an object of size 2 on it in every form.
+#[test]
+fn spheres_too_large_for_the_smallest_object_are_told() {
+    let cube = "type = \"box\"\ncenter = [0, 5, 0]\nsize";
+    for object in [
+        "type = \"sphere\"\ncenter = [0, 5, 0]\nradius = 1",
+        "type = \"rectangle\"\ncenter = [0, 5, 0]\nnormal = [0, 1, 0]\nhead = [1, 0, 0]\nwidth = 2\nheight = 0.1",
+        &format!("{cube} = [0.1, 2, 1]"),
+        &format!("{cube} = [1, 1, 0.5]\nscale = [-2, 1, 1]"),
+        &format!("{cube} = [2, 1e-3, 0.5]\nrotate = {{ axis = [0, 1, 0], degrees = 90 }}"),
+    ] {
+        for (radius, count) in [("1", 0), ("1.9e6", 0), ("2.1e6", 1), ("9e8", 1)] {
+            let ground = format!("[[object]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = {radius}\n");
+            let text = format!("{HEAD}{CLAY}{ground}material = \"clay\"\n[[object]]\nmaterial = \"clay\"\n{object}\n");
+            let imported = memory(&text, &[]).unwrap_or_else(|error| panic!("{text}\n{error}"));
+            let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
+            let told =
+                |warning: &&String| warning.contains("1 sphere of a radius over 1e6 times the size of the smallest");
+            assert_eq!(warnings.iter().filter(told).count(), count, "{text} {warnings:?}");
+        }
+    }
+}
+
 #[test]
 fn what_is_no_face_is_counted() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\nf 1\nf\nl 1 2\nl 2 3\np 1\nf 1 2 3\ncurv2 1 2\n";

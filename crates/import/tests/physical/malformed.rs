@@ -17,7 +17,10 @@ const BODIES: &[(&str, &str)] = &[
         "8:9: the image `no.exr` was not found; searched no.exr; expected a PNG, JPEG, EXR",
     ),
     ("[environment]\nimage = \"a.txt\"", "8:9: the image `a.txt` is no PNG, JPEG, EXR, Radiance HDR or PFM image"),
-    ("[environment]\nimage = \"nan.pfm\"", "8:9: the image `nan.pfm` holds [0.0, NaN, 0.0] in row 1, column 1"),
+    (
+        "[environment]\nimage = \"nan.pfm\"",
+        "8:9: the image `nan.pfm` holds [0.0, NaN, 0.0] in row 1, column 1; expected finite numbers",
+    ),
     ("[environment]\nrotate = 400", "8:10: `rotate`: degrees is 400; expected a number from -360 to 360"),
     ("[environment]\nradiance = -1", "8:12: `radiance` is [-1, -1, -1]; expected three numbers from 0"),
     // Materials.

@@ -33,8 +33,8 @@ impl Converter<'_, '_> {
                 self.follow_options(keyword, &span, wanted);
                 Some(image)
             }
-            Err(message) => {
-                self.builder.reader.report.warn(|| place().with_message(&message));
+            Err(refusal) => {
+                self.builder.reader.report.warn(|| place().with_message(&refusal.message));
                 None
             }
         }
