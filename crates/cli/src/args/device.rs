@@ -47,9 +47,10 @@ pub(crate) struct DeviceArgs {
     /// fault.
     #[arg(id = "station-device", long = "station-device", value_name = "STATION=DEVICE", value_delimiter = ',')]
     station_device: Vec<StationDevice>,
-    /// Longest single piece of GPU work, in milliseconds: the shorter, the smoother a desktop on the same GPU.
-    #[arg(long, value_name = "MS", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=MAX_BUDGET_MS))]
-    gpu_budget: u16,
+    /// Longest single piece of GPU work, in milliseconds: the shorter, the smoother a desktop on the same GPU [default:
+    /// 30]
+    #[arg(id = "gpu-budget", long = "gpu-budget", value_name = "MS", value_parser = clap::value_parser!(u16).range(1..=MAX_BUDGET_MS))]
+    gpu_budget: Option<u16>,
 }
 
 /// Arguments of `devices`.
@@ -80,9 +81,16 @@ impl DeviceArgs {
         !self.station_device.is_empty()
     }
 
+    /// Whether the length of GPU work was given.
+    pub(super) fn has_budget(&self) -> bool {
+        self.gpu_budget.is_some()
+    }
+
     /// How a GPU is used.
     pub(crate) fn gpu_options(&self) -> GpuOptions {
-        GpuOptions { budget: Duration::from_millis(u64::from(self.gpu_budget)), ..GpuOptions::default() }
+        let default = GpuOptions::default();
+        let budget = self.gpu_budget.map_or(default.budget, |ms| Duration::from_millis(u64::from(ms)));
+        GpuOptions { budget, ..default }
     }
 }
 
@@ -123,10 +131,21 @@ mod tests {
     #[test]
     fn a_stations_own_device_counts_and_of_two_the_last() {
         let own = ["gather=cpu", "gather=gpu", "tree=x"].map(|text| text.parse().unwrap()).to_vec();
-        let wanted = DeviceArgs { device: DeviceChoice::Auto, station_device: own, gpu_budget: 30 }.wanted();
+        let wanted = DeviceArgs { device: DeviceChoice::Auto, station_device: own, gpu_budget: None }.wanted();
         let named = DeviceChoice::Named("x".to_owned());
         let expected =
             PerStation::all(DeviceChoice::Auto).with(Station::Gather, DeviceChoice::Gpu).with(Station::Tree, named);
         assert_eq!(wanted, expected);
+    }
+
+    #[test]
+    fn the_budget_is_the_one_given_else_that_of_the_help() {
+        let budget = |gpu_budget| DeviceArgs { device: DeviceChoice::Auto, station_device: Vec::new(), gpu_budget };
+        let told = budget(None).gpu_options().budget.as_millis();
+        assert_eq!(budget(Some(7)).gpu_options().budget, Duration::from_millis(7));
+        let command = crate::args::command();
+        let mut options = command.find_subcommand("render").unwrap().get_arguments();
+        let help = options.find(|arg| arg.get_id() == "gpu-budget").unwrap().get_help().unwrap().to_string();
+        assert!(help.ends_with(&format!("same GPU (thesis) [default: {told}]")), "{help}");
     }
 }

@@ -5,12 +5,16 @@ use clap::{Arg, Command, CommandFactory, FromArgMatches};
 use lightcuts::rendering::{Model, Scope, keys_of};
 use toml::Table;
 
+/// Whether an option was given.
+type IsGiven = fn(&RenderArgs) -> bool;
+
 /// Options of one model that are no settings.
-const OTHERS: [(&str, Model); 4] = [
-    ("read-vpls", Model::Thesis),
-    ("write-vpls", Model::Thesis),
-    ("station-device", Model::Thesis),
-    ("crease-angle", Model::Physical),
+const OTHERS: [(&str, Model, IsGiven); 5] = [
+    ("read-vpls", Model::Thesis, |args| args.job.read_vpls.is_some()),
+    ("write-vpls", Model::Thesis, |args| args.output.write_vpls.is_some()),
+    ("station-device", Model::Thesis, |args| args.performance.devices.has_stations()),
+    ("gpu-budget", Model::Thesis, |args| args.performance.devices.has_budget()),
+    ("crease-angle", Model::Physical, |args| args.job.crease.angle.is_some()),
 ];
 
 /// What the marks in the help mean.
@@ -34,7 +38,7 @@ pub(crate) fn command() -> Command {
 
 /// The scope of an option, whose id is its key in job files: `None` for those that concern no model.
 pub(crate) fn scope_of(id: &str) -> Option<Scope> {
-    let other = OTHERS.iter().find(|(name, _)| *name == id).map(|(_, model)| Scope::Only(*model));
+    let other = OTHERS.iter().find(|(name, ..)| *name == id).map(|(_, model, _)| Scope::Only(*model));
     other.or_else(|| Scope::of(id))
 }
 
@@ -74,13 +78,7 @@ impl SettingFlags {
 impl RenderArgs {
     /// The options given that have no meaning in a model of light, as they were typed.
     pub(crate) fn foreign_options(&self, model: Model) -> Vec<String> {
-        let others = [
-            ("read-vpls", self.job.read_vpls.is_some()),
-            ("write-vpls", self.output.write_vpls.is_some()),
-            ("station-device", self.performance.devices.has_stations()),
-            ("crease-angle", self.job.crease.angle.is_some()),
-        ];
-        let others = others.into_iter().filter(|(_, is_given)| *is_given).map(|(id, _)| id.to_owned());
+        let others = OTHERS.iter().filter(|(.., is_given)| is_given(self)).map(|(id, ..)| (*id).to_owned());
         let given = keys_of(&self.settings.table()).into_iter().chain(others);
         let foreign = given.filter(|id| scope_of(id).is_some_and(|scope| !scope.includes(model)));
         foreign.map(|id| typed(&id)).collect()

@@ -47,7 +47,7 @@ fn nothing_is_set_without_flags() {
 }
 
 /// Options that concern no model of light, or both alike, and are no settings.
-const COMMON: [&str; 14] = [
+const COMMON: [&str; 13] = [
     "scene",
     "pictures",
     "stats",
@@ -59,7 +59,6 @@ const COMMON: [&str; 14] = [
     "folders",
     "size",
     "device",
-    "gpu_budget",
     "threads",
     "simd",
 ];
@@ -172,6 +171,17 @@ fn options_are_told_as_they_are_typed() {
     let foreign = args.foreign_options(Model::Physical);
     assert_eq!(foreign, ["--bloom", "--no-second-pass", "--read-vpls"]);
     assert_eq!(args.foreign_options(Model::Thesis), [""; 0]);
+    for (option, model) in [
+        ("--read-vpls=v.csv", Model::Thesis),
+        ("--write-vpls=v.csv", Model::Thesis),
+        ("--station-device=gather=cpu", Model::Thesis),
+        ("--gpu-budget=30", Model::Thesis),
+        ("--crease-angle=40", Model::Physical),
+    ] {
+        let other = if model == Model::Thesis { Model::Physical } else { Model::Thesis };
+        let (args, name) = (parsed(&[option]), option.split('=').next().unwrap());
+        assert_eq!((args.foreign_options(model), args.foreign_options(other)), (vec![], vec![name.to_owned()]));
+    }
     let told =
         ["image.width", "filter.kind", "display.global.max-display-luminance"].map(|key| args.settings.option_for(key));
     assert_eq!(told, ["the width of --size", "--filter", "--global-luminance"]);
