@@ -17,7 +17,7 @@ pub(crate) struct PhysicalFlags {
     /// the same picture.
     #[arg(id = "physical.integrator", long = "integrator", value_name = "NAME", value_parser = ["lightcuts", "path", "auto"])]
     integrator: Option<String>,
-    /// Stop after this time, such as 10s, 2m or 1.5h; 0 for no limit [default: 0]
+    /// Stop after this time, such as 10s, 500ms, 2m or 1.5h; 0 for no limit [default: 0]
     ///
     /// Rendering stops then, at any picture size; unsampled pixels copy the nearest sampled one. Reading the scene and
     /// writing files come on top. The number of samples is not limited unless --samples is given.

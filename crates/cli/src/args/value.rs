@@ -20,7 +20,7 @@ impl FromStr for Size {
     }
 }
 
-/// A time in seconds, written `90`, `90s`, `1.5m` or `1h`.
+/// A time in seconds, written `90`, `90s`, `500ms`, `1.5m` or `1h`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(transparent)]
 pub(super) struct Seconds(f32);
@@ -29,12 +29,13 @@ impl FromStr for Seconds {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let units = [("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+        // `ms` ends as `s` does, so it comes first.
+        let units = [("ms", 0.001), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
         let (number, factor) = units
             .into_iter()
             .find_map(|(unit, factor)| Some((text.strip_suffix(unit)?, factor)))
             .unwrap_or((text, 1.0));
-        let number: f32 = number.trim().parse().map_err(|_| "expected a time such as 10s, 2m or 1.5h")?;
+        let number: f32 = number.trim().parse().map_err(|_| "expected a time such as 10s, 500ms, 2m or 1.5h")?;
         if number.is_finite() && number >= 0.0 {
             Ok(Self(number * factor))
         } else {
@@ -66,7 +67,8 @@ mod tests {
     fn times_have_units() {
         let seconds = |text: &str| text.parse::<Seconds>().map(|Seconds(s)| s);
         assert_eq!([seconds("90"), seconds("90s"), seconds("1.5m"), seconds("2h")], [90.0, 90.0, 90.0, 7200.0].map(Ok));
-        for text in ["", "s", "-1", "1d", "inf", "nans"] {
+        assert_eq!([seconds("1ms"), seconds("250 ms"), seconds("0ms")], [0.001, 0.25, 0.0].map(Ok));
+        for text in ["", "s", "ms", "-1", "-1ms", "1d", "1sm", "inf", "nans", "infms"] {
             assert!(text.parse::<Seconds>().is_err(), "{text}");
         }
     }
