@@ -181,17 +181,12 @@ pub(crate) enum ChannelOrder {
     Rgb,
 }
 
-/// Metrics by key, each with its meaning in the help; `flip` and `pdiff` are short for the first of their kind.
+/// Metrics by key, each with its meaning in the help, and by their short names.
 fn metric_parser() -> impl TypedValueParser<Value = Metric> {
-    let value = |metric: Metric| {
-        let value = PossibleValue::new(metric.key()).help(metric.summary());
-        match metric {
-            Metric::FlipLdr => value.alias("flip"),
-            Metric::PdiffPx => value.alias("pdiff"),
-            _ => value,
-        }
-    };
-    PossibleValuesParser::new(Metric::ALL.map(value)).try_map(|name| -> Result<Metric, UnknownMetric> { name.parse() })
+    let keys = Metric::ALL.map(|metric| PossibleValue::new(metric.key()).help(metric.summary()));
+    let short = Metric::SHORT.map(|(name, metric)| PossibleValue::new(name).help(format!("Short for {metric}.")));
+    PossibleValuesParser::new(keys.into_iter().chain(short))
+        .try_map(|name| -> Result<Metric, UnknownMetric> { name.parse() })
 }
 
 /// `auto`, or START,STOP,COUNT.
@@ -225,7 +220,9 @@ mod tests {
         let args = parsed(&["--metrics", "ssim,flip,pdiff", "--metrics", "bias"]).unwrap();
         assert_eq!(args.judging.metrics, [Metric::Ssim, Metric::FlipLdr, Metric::PdiffPx, Metric::Bias]);
         let error = parsed(&["--metrics", "ssmi"]).unwrap_err().to_string();
-        assert!(error.contains("ssmi") && error.contains("fireflies"), "{error}");
+        let listed = error.split_once("[possible values: ").unwrap().1.split_once(']').unwrap().0;
+        let listed: Vec<&str> = listed.split(", ").collect();
+        assert_eq!(listed, [&Metric::ALL.map(Metric::key)[..], &["flip", "pdiff"]].concat(), "{error}");
     }
 
     #[test]

@@ -62,10 +62,15 @@ pub enum Domain {
 
 /// A name that no metric has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no metric {name:?}; the metrics are {}", Metric::ALL.map(Metric::key).join(", "))]
+#[error("there is no metric {name:?}; the metrics are {}, in short {}", Metric::ALL.map(Metric::key).join(", "), short())]
 pub struct UnknownMetric {
     /// The name.
     pub name: String,
+}
+
+/// The short names with what they are short for.
+fn short() -> String {
+    Metric::SHORT.map(|(name, metric)| format!("{name} ({metric})")).join(", ")
 }
 
 impl Metric {
@@ -88,6 +93,9 @@ impl Metric {
         Self::RelBias,
         Self::Fireflies,
     ];
+
+    /// Short names of the first of each kind.
+    pub const SHORT: [(&'static str, Self); 2] = [("flip", Self::FlipLdr), ("pdiff", Self::PdiffPx)];
 
     /// The name in commands and in JSON.
     pub fn key(self) -> &'static str {
@@ -208,16 +216,11 @@ impl fmt::Display for Metric {
 impl FromStr for Metric {
     type Err = UnknownMetric;
 
-    /// A metric by its key; `flip` is `flip_ldr` and `pdiff` is `pdiff_px`.
+    /// A metric by its key or its short name.
     fn from_str(name: &str) -> Result<Self, UnknownMetric> {
-        match name {
-            "flip" => Ok(Self::FlipLdr),
-            "pdiff" => Ok(Self::PdiffPx),
-            _ => Self::ALL
-                .into_iter()
-                .find(|metric| metric.key() == name)
-                .ok_or_else(|| UnknownMetric { name: name.to_owned() }),
-        }
+        let mut named = Self::ALL.map(|metric| (metric.key(), metric)).into_iter().chain(Self::SHORT);
+        let found = named.find(|(known, _)| *known == name).map(|(_, metric)| metric);
+        found.ok_or_else(|| UnknownMetric { name: name.to_owned() })
     }
 }
 
@@ -236,7 +239,10 @@ mod tests {
         assert_eq!("flip".parse(), Ok(Metric::FlipLdr));
         assert_eq!("pdiff".parse(), Ok(Metric::PdiffPx));
         let error = "ssimm".parse::<Metric>().unwrap_err().to_string();
-        assert_eq!(error, format!("there is no metric \"ssimm\"; the metrics are {keys}"));
+        assert_eq!(
+            error,
+            format!("there is no metric \"ssimm\"; the metrics are {keys}, in short flip (flip_ldr), pdiff (pdiff_px)")
+        );
     }
 
     #[test]
