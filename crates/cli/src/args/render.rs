@@ -108,7 +108,8 @@ pub(crate) enum ProgressStyle {
     Bar,
     /// A few lines of text
     Plain,
-    /// A JSON object per line: stage, done, total, elapsed_s, remaining_s; or note
+    /// A JSON object per line: stage, done, total, elapsed_s, remaining_s, and of an experiment job, jobs, scene,
+    /// configuration, point, seed, run; or note
     Json,
     /// Nothing
     None,
