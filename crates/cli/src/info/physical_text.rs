@@ -1,7 +1,7 @@
 //! A scene of the physical model, for people.
 
 use super::physical::{Camera, Environment, Light, Material, Object, PhysicalInfo};
-use super::text::{MAX_LISTED, aligned, bounds, count, line, more, vector};
+use super::text::{bounds, count, line, table, vector};
 
 /// A line per matter, and tables of lights, objects and materials.
 pub(super) fn of_physical(info: &PhysicalInfo) -> String {
@@ -26,20 +26,6 @@ pub(super) fn of_physical(info: &PhysicalInfo) -> String {
     // The warnings themselves went to standard error.
     lines.push(line("warnings", &info.warnings.len().to_string()));
     lines.join("")
-}
-
-/// A header and a numbered line for each, or nothing; more than some are only counted.
-fn table<T, const N: usize>(header: [&str; N], all: &[T], row: impl Fn(&T) -> [String; N]) -> Vec<String> {
-    if all.is_empty() {
-        return Vec::new();
-    }
-    let numbered = all.iter().take(MAX_LISTED).enumerate().map(|(i, one)| {
-        let mut cells = row(one);
-        cells[0] = (i + 1).to_string();
-        cells
-    });
-    let rows: Vec<[String; N]> = std::iter::once(header.map(str::to_owned)).chain(numbered).collect();
-    aligned(&rows).into_iter().chain(more(all.len())).collect()
 }
 
 fn camera(camera: &Camera) -> String {
