@@ -1,6 +1,6 @@
 //! From the command line to a finished plan: scene read, job resolved, outputs checked. Nothing is rendered or written.
 
-use crate::args::{JobArgs, RenderArgs, SearchArgs};
+use crate::args::{CreaseArgs, JobArgs, RenderArgs, SearchArgs};
 use crate::console;
 use crate::exit::{Exit, Failure};
 use crate::job::{self, Job, JobFile};
@@ -41,6 +41,7 @@ impl Plan {
         let outputs = Outputs::new(&args.output, &sources.scene)?;
         outputs.check(&sources.inputs)?;
         let imported = load(&sources.scene, &sources.search_path, sources.crease_angle)?;
+        refuse_crease_angle(&imported.scene, &args.job.crease, &sources.files)?;
         let model = fitting_model(&imported.scene, &sources.files, args)?;
         let settings = job::resolve(&recommended(&imported.scene, model), &sources.files, &args.settings)?;
         let scene = in_model(imported.scene, &settings);
@@ -52,9 +53,7 @@ impl Plan {
         let read_vpls = read_vpls.filter(|_| model == Model::Thesis);
         Ok(Self { scene, job: Job { scene: file, search_path, crease_angle, read_vpls, settings }, outputs })
     }
-}
 
-impl Plan {
     /// The scene's name.
     pub(crate) fn scene_name(&self) -> &str {
         match &self.scene {
@@ -143,7 +142,8 @@ pub(crate) fn search_path<'a>(args: &'a SearchArgs, of_job: impl Iterator<Item =
     folders
 }
 
-/// Reads a scene; its warnings go to standard error. `crease_angle`, in degrees, takes the place of those of its objects.
+/// Reads a scene; its warnings go to standard error. `crease_angle`, in degrees, takes the place of those of its
+/// objects.
 pub(crate) fn load(
     path: &Path,
     search_paths: &[PathBuf],
@@ -159,11 +159,17 @@ pub(crate) fn load(
     }
     let imported = result.map_err(|error| Failure::new(Exit::Input, error))?;
     tracing::info!(files = imported.files.len(), "read {}", path.display());
-    if crease_angle.is_some() && matches!(imported.scene, AnyScene::Thesis(_)) {
-        return Err(Failure::usage(
-            "a crease angle is given, which has no meaning in the thesis' text format",
-            "leave out --crease-angle, and `crease-angle` in the job",
-        ));
-    }
     Ok(imported)
+}
+
+/// Fails if the flag, or else a job file, gives a crease angle to a scene in the thesis' text format, whatever the model
+/// of light: nothing in it is smoothed by an angle.
+pub(crate) fn refuse_crease_angle(scene: &AnyScene, flag: &CreaseArgs, files: &[JobFile]) -> Result<(), Failure> {
+    match scene {
+        AnyScene::Physical(_) => Ok(()),
+        AnyScene::Thesis(_) if flag.angle.is_some() => {
+            Err(Failure::usage("--crease-angle has no meaning in the thesis' text format", "leave it out"))
+        }
+        AnyScene::Thesis(_) => files.iter().rev().find_map(JobFile::needless_crease_angle).map_or(Ok(()), Err),
+    }
 }

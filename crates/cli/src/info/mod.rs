@@ -9,7 +9,7 @@ mod text;
 use crate::args::InfoArgs;
 use crate::console;
 use crate::exit::{Exit, Failure};
-use crate::plan::{load, search_path};
+use crate::plan::{load, refuse_crease_angle, search_path};
 use lightcuts::{AnyScene, Imported, PhysicalWorld, World};
 use serde::Serialize;
 
@@ -20,6 +20,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<Exit, Failure> {
         return show(&info, args.json, text::of_picture);
     }
     let imported = load(&args.path, &search_path(&args.search, std::iter::empty()), args.crease.angle)?;
+    refuse_crease_angle(&imported.scene, &args.crease, &[])?;
     let Imported { scene, warnings, files } = imported;
     match scene {
         AnyScene::Thesis(scene) => {

@@ -161,6 +161,14 @@ impl JobFile {
         fault(Exit::Usage, &self.name, &self.text, span, &message, label)
     }
 
+    /// The complaint about a crease angle, if this job has one, for a scene in the thesis' text format.
+    pub(crate) fn needless_crease_angle(&self) -> Option<Failure> {
+        self.crease_angle?;
+        let span = self.span_of("crease-angle").unwrap_or_default();
+        let message = "`crease-angle` has no meaning in the thesis' text format";
+        Some(fault(Exit::Usage, &self.name, &self.text, span, message, "only for scenes in TOML"))
+    }
+
     /// The complaint that this job names the thesis' model for a scene that it cannot render.
     pub(crate) fn wrong_model(&self) -> Failure {
         let span = self.span_of("run.model").unwrap_or_default();
@@ -215,7 +223,7 @@ fn read_text(path: &Path) -> Result<String, Failure> {
 
 /// The text `keyword` in the header of a picture.
 fn picture_text(path: &Path, keyword: &str) -> Result<Option<String>, Failure> {
-    require_regular(path).map_err(|why| Failure::input(format!("cannot read {}: {why}", path.display())))?;
+    require_picture(path)?;
     let text = if has_extension(path, "exr") {
         image::read_exr_attributes(path).map(|mut attributes| attributes.remove(keyword))
     } else {
@@ -231,6 +239,11 @@ pub(crate) fn require_regular(path: &Path) -> Result<(), String> {
         Ok(_) => Err("it is not a regular file".to_owned()),
         Err(error) => Err(error.to_string()),
     }
+}
+
+/// Fails unless there is a regular file to read a picture from.
+pub(crate) fn require_picture(path: &Path) -> Result<(), Failure> {
+    require_regular(path).map_err(|why| Failure::input(format!("cannot read the picture {}: {why}", path.display())))
 }
 
 #[cfg(test)]

@@ -31,14 +31,15 @@ pub(crate) fn resolve(recommended: &Settings, files: &[JobFile], flags: &Setting
     let settings: Settings = table.try_into().map_err(|error: toml::de::Error| unexpected(&error.message()))?;
     settings.validate().map_err(|error| {
         let culprit = files.iter().rev().find_map(|file| Some((file, file.span_of(&error.name)?)));
-        match culprit {
-            _ if value_in(&given, &error.name).is_some() => {
+        match (value_in(&given, &error.name), culprit) {
+            (Some(value), _) => {
                 let option = flags.option_for(&error.name);
-                let message = format!("{option} is {}; expected {}", error.value, error.expected);
-                Failure::usage(message, "see `lightcuts render --help`")
+                // A switch is typed without its value.
+                let told = if value.is_bool() { format!("{option}:") } else { format!("{option} is {};", error.value) };
+                Failure::usage(format!("{told} expected {}", error.expected), "see `lightcuts render --help`")
             }
-            Some((file, span)) => file.out_of_range(&error, span),
-            None => Failure::usage(error.to_string(), "this is what the scene recommends; set another value"),
+            (None, Some((file, span))) => file.out_of_range(&error, span),
+            (None, None) => Failure::usage(error.to_string(), "this is what the scene recommends; set another value"),
         }
     })?;
     Ok(settings)

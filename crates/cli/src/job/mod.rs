@@ -7,7 +7,9 @@ mod kind;
 mod merge;
 mod path;
 
-pub(crate) use file::{JOB_ATTRIBUTE, JobFile, VERSION_ATTRIBUTE, has_extension, is_job_carrier, require_regular};
+pub(crate) use file::{
+    JOB_ATTRIBUTE, JobFile, VERSION_ATTRIBUTE, has_extension, is_job_carrier, require_picture, require_regular,
+};
 pub(crate) use merge::{model, require_fitting, resolve};
 
 use lightcuts::Settings;

@@ -99,6 +99,8 @@ fn bad_jobs_are_bad_usage() {
         let said = stderr(&folder.run("render job.toml").code(2));
         assert!(said.contains(expected), "{expected} is missing in:\n{said}");
     }
+    let said = stderr(&folder.run("render scene.txt --reproduce --size 8x8").code(2));
+    assert!(said.contains("--reproduce: expected 512 x 512 pixels of one sample"), "{said}");
     // What is not there is a scene that is not there, unless it is said to be a job.
     folder.run("render none.toml").code(3);
     folder.run("render --job none.toml").code(2);

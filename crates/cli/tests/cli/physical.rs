@@ -162,6 +162,7 @@ fn scenes_of_the_thesis_can_be_rendered_with_it_and_not_the_other_way_round() {
         ("ball.toml --bloom --ao-step 3", "--ao-step, --bloom have no meaning in the physical model"),
         ("ball.toml --reproduce", "--reproduce has no meaning in the physical model"),
         ("ball.toml --write-vpls v.csv", "--write-vpls has no meaning in the physical model"),
+        ("ball.toml --gpu-budget 30", "--gpu-budget has no meaning in the physical model"),
         ("scene.txt --vpls 10", "--vpls has no meaning in the thesis' model"),
         ("scene.txt --integrator path", "--integrator has no meaning in the thesis' model"),
         ("scene.txt --model physical --threshold 1", "leave it out, or render with --model thesis"),
@@ -213,7 +214,10 @@ fn info_names_what_is_in_a_scene() {
     assert_eq!(json("--crease-angle 25")["smoothed_meshes"], serde_json::json!({ "25": 1 }));
     assert_eq!(json("--crease-angle 20")["smoothed_meshes"], serde_json::json!({}));
     folder.run("info roof.toml --crease-angle 181").code(2);
-    folder.run("info scene.txt --crease-angle 30").code(2);
+    for command in ["info scene.txt", "render scene.txt", "render scene.txt --model physical"] {
+        let said = stderr(&folder.run(&format!("{command} --crease-angle 30")).code(2));
+        assert!(said.contains("--crease-angle has no meaning in the thesis' text format"), "{said}");
+    }
 }
 
 #[test]
@@ -226,6 +230,9 @@ fn a_crease_angle_is_part_of_the_job() {
     folder.write("job.toml", "scene = 'ball.toml'\ncrease-angle = 200\n");
     let said = stderr(&folder.run("render job.toml").code(2));
     assert!(said.contains("job.toml:2:16: crease-angle is 200"), "{said}");
+    folder.write("job.toml", "scene = 'scene.txt'\ncrease-angle = 20\n");
+    let said = stderr(&folder.run("render job.toml").code(2));
+    assert!(said.contains("job.toml:2:16: `crease-angle` has no meaning in the thesis' text format"), "{said}");
 }
 
 #[test]
@@ -284,14 +291,6 @@ fn keys_of_the_other_model_in_a_job_are_told_with_their_line() {
     assert!(!folder.job_of("thesis.exr").contains("[physical]"));
     folder.run("render thesis.exr -q -o again.exr").success();
     assert!(folder.bytes("thesis.exr") == folder.bytes("again.exr"));
-}
-
-#[test]
-fn a_scene_without_its_first_line_is_not_taken_for_a_job() {
-    let folder = folder();
-    folder.write("headless.toml", SCENE.split_once('\n').unwrap().1);
-    let said = stderr(&folder.run("render headless.toml").code(3));
-    assert!(said.contains("format") && !said.contains("unknown key `camera`"), "{said}");
 }
 
 #[test]
