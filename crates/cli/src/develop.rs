@@ -3,8 +3,8 @@
 use crate::args::DevelopArgs;
 use crate::console;
 use crate::exit::{Exit, Failure};
-use crate::job::{VERSION_ATTRIBUTE, has_extension, require_regular, resolve};
-use crate::outputs::check_files;
+use crate::job::{VERSION_ATTRIBUTE, require_picture, resolve};
+use crate::outputs::check_png;
 use crate::render::start_threads;
 use lightcuts::Settings;
 use lightcuts::image::{self, Exposure, Image, Light, LightOptions};
@@ -15,9 +15,9 @@ use std::path::{Path, PathBuf};
 pub(crate) fn run(args: &DevelopArgs) -> Result<Exit, Failure> {
     start_threads(&args.threads)?;
     let mut settings = resolve(&Settings::for_physical(), &[], &args.flags.settings())?;
-    require_regular(&args.picture)
-        .map_err(|why| Failure::input(format!("cannot read the picture {}: {why}", args.picture.display())))?;
-    let output = output(args)?;
+    require_picture(&args.picture)?;
+    let output = args.output.clone().unwrap_or_else(|| default_output(args));
+    check_png(&output, &args.picture, "picture")?;
     let options = LightOptions { layer: args.layer.as_deref(), ..LightOptions::default() };
     let light = image::read_light(&args.picture, &options).map_err(Failure::input)?;
     warn(&args.picture, &light);
@@ -35,16 +35,9 @@ pub(crate) fn run(args: &DevelopArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// The file to write, which no input may be.
-fn output(args: &DevelopArgs) -> Result<PathBuf, Failure> {
+fn default_output(args: &DevelopArgs) -> PathBuf {
     let stem = args.picture.file_stem().unwrap_or("picture".as_ref()).to_string_lossy();
-    let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.png")));
-    if !has_extension(&output, "png") {
-        let message = format!("{} is no picture that can be written", output.display());
-        return Err(Failure::usage(message, "expected a name that ends in .png"));
-    }
-    check_files([output.as_path()].into_iter(), std::slice::from_ref(&args.picture), "picture", "-o")?;
-    Ok(output)
+    PathBuf::from(format!("{stem}.png"))
 }
 
 /// Says how the numbers were taken, and which of them are none.
@@ -59,8 +52,11 @@ fn warn(path: &Path, light: &Light) {
 
 fn summary(args: &DevelopArgs, factor: f32, is_automatic: bool, shown: &Image, output: &Path) -> String {
     let pixels = shown.pixels();
-    let clipped = pixels.iter().filter(|pixel| pixel.iter().any(|value| *value > 1.0)).count();
-    let share = 100.0 * clipped as f64 / pixels.len().max(1) as f64;
+    let share = |is_above: fn(&&[f32; 3]) -> bool| {
+        100.0 * pixels.iter().filter(is_above).count() as f64 / pixels.len().max(1) as f64
+    };
+    let white = share(|pixel| pixel.iter().all(|value| *value > 1.0));
+    let clipped = share(|pixel| pixel.iter().any(|value| *value > 1.0));
     let automatic = if is_automatic { " (auto)" } else { "" };
     let mut text = String::new();
     // Writing to a String cannot fail.
@@ -69,7 +65,7 @@ fn summary(args: &DevelopArgs, factor: f32, is_automatic: bool, shown: &Image, o
     };
     line("picture", &format!("{}, {} x {}", args.picture.display(), shown.width(), shown.height()));
     line("exposure", &format!("{factor}{automatic}"));
-    line("above white", &format!("{share:.2} % of the pixels"));
+    line("above white", &format!("{white:.2} % of the pixels; {clipped:.2} % in a channel or more"));
     line("wrote", &output.display().to_string());
     text
 }

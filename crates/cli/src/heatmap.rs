@@ -3,8 +3,8 @@
 use crate::args::HeatmapArgs;
 use crate::console;
 use crate::exit::{Exit, Failure};
-use crate::job::{has_extension, require_regular};
-use crate::outputs::check_files;
+use crate::job::{require_picture, require_regular};
+use crate::outputs::check_png;
 use lightcuts::image::{self, ColorMap, HeatMap, Image, LayerData, Layers, Plane, Transfer, heat_map, luminance};
 use std::path::{Path, PathBuf};
 
@@ -13,13 +13,9 @@ const BEAUTY: &str = "beauty";
 
 /// Runs the command.
 pub(crate) fn run(args: &HeatmapArgs) -> Result<Exit, Failure> {
-    require_picture(args)?;
+    require_picture(&args.picture).map_err(|failure| swapped(args).unwrap_or(failure))?;
     let output = args.output.clone().unwrap_or_else(|| default_output(args));
-    if !has_extension(&output, "png") {
-        let message = format!("{} is no picture that can be written", output.display());
-        return Err(Failure::usage(message, "expected a name that ends in .png"));
-    }
-    check_files([output.as_path()].into_iter(), std::slice::from_ref(&args.picture), "heat map", "-o")?;
+    check_png(&output, &args.picture, "heat map")?;
     let layers = image::read_exr(&args.picture).map_err(Failure::input)?;
     let values = values(&layers, &args.layer)?;
     let shown = if args.log { values.map(|value| value.max(f32::MIN_POSITIVE).log10()) } else { values };
@@ -31,16 +27,12 @@ pub(crate) fn run(args: &HeatmapArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// Fails unless there is a picture; a layer that is a file tells why there may be none.
-fn require_picture(args: &HeatmapArgs) -> Result<(), Failure> {
+/// The complaint where there is no such picture but a file with the name of the layer.
+fn swapped(args: &HeatmapArgs) -> Option<Failure> {
     let (picture, layer) = (args.picture.display(), &args.layer);
-    require_regular(&args.picture).map_err(|why| {
-        if require_regular(Path::new(layer)).is_err() {
-            return Failure::input(format!("cannot read the picture {picture}: {why}"));
-        }
-        let message = format!("the picture and its layer seem to be swapped: {layer} is a file, {picture} is none");
-        Failure::usage(message, format!("lightcuts heatmap {layer} {picture}"))
-    })
+    require_regular(Path::new(layer)).ok()?;
+    let message = format!("the picture and its layer seem to be swapped: {layer} is a file, {picture} is none");
+    Some(Failure::usage(message, format!("lightcuts heatmap {layer} {picture}")))
 }
 
 fn default_output(args: &HeatmapArgs) -> PathBuf {

@@ -88,6 +88,15 @@ pub(crate) fn check_files<'a>(
     Ok(())
 }
 
+/// Fails unless a PNG can be written that a command makes of one file; `made` is what it makes.
+pub(crate) fn check_png(output: &Path, input: &Path, made: &str) -> Result<(), Failure> {
+    if !has_extension(output, "png") {
+        let message = format!("{} is no picture that can be written", output.display());
+        return Err(Failure::usage(message, "expected a name that ends in .png"));
+    }
+    check_files(std::iter::once(output), &[input.to_path_buf()], made, "-o")
+}
+
 fn picture_kind(path: &Path) -> Result<Kind, Failure> {
     match () {
         () if has_extension(path, "exr") => Ok(Kind::Exr),

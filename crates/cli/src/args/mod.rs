@@ -85,7 +85,7 @@ pub(crate) enum Command {
     #[command(after_help = compare::AFTER_HELP)]
     Compare(Box<CompareArgs>),
     /// Make a PNG of a finished picture: exposure, tone mapping, transfer, bloom.
-    #[command(after_help = develop::AFTER_HELP)]
+    #[command(after_help = format!("{}\n\n{VIEWING_AFTER_HELP}", develop::AFTER_HELP))]
     Develop(Box<DevelopArgs>),
     /// Show a layer of a picture (cut sizes, variance, depth, ...) in false colours with a scale.
     #[command(after_help = VIEWING_AFTER_HELP)]

@@ -3,7 +3,7 @@
 use crate::args::{CompareArgs, InputArgs};
 use crate::console;
 use crate::exit::Failure;
-use crate::job::require_regular;
+use crate::job::require_picture;
 use lightcuts::image::{Channels, Picture, PictureFile, read_picture};
 use miette::MietteDiagnostic;
 use std::path::Path;
@@ -27,8 +27,7 @@ impl Inputs {
     pub(super) fn read(args: &CompareArgs) -> Result<Self, Failure> {
         let start = Instant::now();
         for path in [&args.reference, &args.test] {
-            require_regular(path)
-                .map_err(|why| Failure::input(format!("cannot read the picture {}: {why}", path.display())))?;
+            require_picture(path)?;
         }
         let read = |path: &Path| {
             read_picture(path, args.input.transfer.into(), args.input.layer.as_deref()).map_err(Failure::input)
@@ -57,9 +56,11 @@ fn warnings(args: &CompareArgs, reference: &PictureFile, test: &PictureFile) -> 
         let name = path.display().to_string();
         file.remarks.iter().map(move |remark| format!("{name}: {remark}")).collect::<Vec<_>>()
     };
-    let mut warnings = [of(&args.reference, reference), of(&args.test, test)].concat();
-    warnings.dedup();
-    warnings
+    let of_reference = of(&args.reference, reference);
+    // A picture that is compared with itself is told of once.
+    let others = of(&args.test, test).into_iter().filter(|warning| !of_reference.contains(warning));
+    let others: Vec<String> = others.collect();
+    [of_reference, others].concat()
 }
 
 /// Fails unless sizes, places and channels match, as far as options do not let them differ.

@@ -2,7 +2,7 @@
 
 use crate::console;
 use crate::exit::Failure;
-use crate::job::{JOB_ATTRIBUTE, VERSION_ATTRIBUTE, has_extension, require_regular};
+use crate::job::{JOB_ATTRIBUTE, VERSION_ATTRIBUTE, has_extension, require_picture};
 use lightcuts::image::{self, Frame, Inventory, PictureFormat, PictureLayer, Window};
 use serde::Serialize;
 use std::fs::File;
@@ -65,7 +65,7 @@ pub(super) fn is_picture(path: &Path) -> bool {
 impl PictureInfo {
     /// Reads the picture whole: damage shows. Warnings go to standard error.
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
-        require_regular(path).map_err(|why| Failure::input(format!("cannot read {}: {why}", path.display())))?;
+        require_picture(path)?;
         let Inventory { format, frame, layers, remarks, mut attributes } =
             image::picture_inventory(path).map_err(Failure::input)?;
         for remark in &remarks {

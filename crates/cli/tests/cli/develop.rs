@@ -38,6 +38,35 @@ fn light_is_exposed_transferred_and_rounded() {
 }
 
 #[test]
+fn above_white_is_what_the_file_shows_white() {
+    let folder = Folder::new();
+    // White lamps and yellow ones in a dark room; grey and white walls.
+    let lamps = Image::from_fn(16, 16, |x, y| match (x % 4, y % 4) {
+        (1, 1) => [900.0; 3],
+        (3, 3) => [900.0, 800.0, 0.0],
+        _ => [0.05; 3],
+    });
+    let walls = Image::from_fn(16, 16, |x, y| [[4.0; 3], [4.0, 0.5, 0.5], [0.5; 3], [1.0; 3]][(x + y) % 4]);
+    for (picture, options, white, clipped) in [
+        (&lamps, "--tone-mapping none", "6.25", "12.50"),
+        (&lamps, "--exposure auto --tone-mapping local", "6.25", "12.50"),
+        (&lamps, "--exposure 1e-4", "0.00", "0.00"),
+        (&walls, "--tone-mapping none", "25.00", "50.00"),
+    ] {
+        write_exr(folder.at("a.exr"), &Layers::new(picture.clone())).unwrap();
+        let said = stdout(&folder.run(&format!("develop a.exr {options} -o a.png")).success());
+        let expected = format!("above white  {white} % of the pixels; {clipped} % in a channel or more\n");
+        assert!(said.contains(&expected), "{options}: {said}");
+        let written = read_png(folder.at("a.png"), Transfer::Linear).unwrap();
+        let share = |is_white: fn(&&[f32; 3]) -> bool| written.pixels().iter().filter(is_white).count() as f64 / 2.56;
+        // 1 itself is white, and not above it.
+        let at_one = if std::ptr::eq(picture, &raw const walls) { 25.0 } else { 0.0 };
+        assert_eq!(format!("{:.2}", share(|pixel| **pixel == [1.0; 3]) - at_one), white, "{options}");
+        assert_eq!(format!("{:.2}", share(|pixel| pixel.contains(&1.0)) - at_one), clipped, "{options}");
+    }
+}
+
+#[test]
 fn an_automatic_exposure_does_not_depend_on_the_level() {
     let folder = Folder::new();
     let mut pictures = Vec::new();

@@ -107,6 +107,20 @@ fn pictures_of_other_places_are_never_the_same() {
 }
 
 #[test]
+fn a_picture_that_is_compared_with_itself_is_told_of_once() {
+    let folder = Folder::new();
+    write_foreign(&folder, "a.exr", |(part, whole)| {
+        whole.chromaticities = Some(aces());
+        part.other.insert("colorInteropID".into(), foreign::attribute::AttributeValue::Text("g24_rec709_scene".into()));
+    });
+    let found = stdout(&folder.run("compare a.exr a.exr --metrics rmse --json").code(0));
+    let found: serde_json::Value = serde_json::from_str(&found).unwrap();
+    let warnings: Vec<&str> = found["warnings"].as_array().unwrap().iter().map(|it| it.as_str().unwrap()).collect();
+    let told: std::collections::HashSet<&str> = warnings.iter().copied().collect();
+    assert!(warnings.len() > 1 && told.len() == warnings.len(), "{warnings:?}");
+}
+
+#[test]
 fn twice_the_light_is_never_the_same() {
     let folder = Folder::new();
     let base = |kind: usize| {
