@@ -20,7 +20,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     vulkan::provide(!args.no_install);
     if has_nextest() {
         println!("tests run with cargo-nextest, documentation examples with cargo test");
-        // First, so that the last line is that of nextest. Of packages that have some: rustdoc takes seconds to find none.
+        // First, so that the last line is that of nextest. Of packages that have some: rustdoc takes seconds to find
+        // none.
         let packages = examples::packages()?;
         let packages = packages.iter().flat_map(|package| ["--package", package]);
         run_counted(cargo().args(["test", "--doc", "--no-fail-fast"]).args(packages), "documentation examples")?;

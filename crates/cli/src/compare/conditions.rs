@@ -50,8 +50,9 @@ const DEFAULT: [Condition; 2] = [
     Condition { metric: Metric::FlipLdr, relation: Relation::Above, number: 0.05 },
 ];
 
-/// What counts beside them where both pictures hold light: a display shows nothing above 1 and hardly anything near 0. HDR-FLIP
-/// sees at all exposures what FLIP sees at one; the relative bias sees light that few pixels hold, which no mean over pixels does.
+/// What counts beside them where both pictures hold light: a display shows nothing above 1 and hardly anything near 0.
+/// HDR-FLIP sees at all exposures what FLIP sees at one; the relative bias sees light that few pixels hold, which no mean
+/// over pixels does.
 const DEFAULT_OF_LIGHT: [Condition; 2] = [
     Condition { metric: Metric::FlipHdr, relation: Relation::Above, number: 0.05 },
     Condition { metric: Metric::RelBias, relation: Relation::Above, number: 0.1 },

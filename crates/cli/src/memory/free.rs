@@ -1,5 +1,5 @@
-//! How much memory can be had: of the machine, and of the control groups that this process is in, as those of containers. Known on
-//! Linux only.
+//! How much memory can be had: of the machine, and of the control groups that this process is in, as those of
+//! containers. Known on Linux only.
 
 use std::fs::read_to_string;
 use std::path::Path;
@@ -43,7 +43,8 @@ const NAMES_1: Names = Names {
     droppable: "total_inactive_file ",
 };
 
-/// Memory that can be had without pushing other programs out, and free swap, in bytes. `root` is that of the file system.
+/// Memory that can be had without pushing other programs out, and free swap, in bytes. `root` is that of the file
+/// system.
 pub(super) fn free_bytes(root: &Path) -> Option<u64> {
     let of = |key| kibibytes_of(&root.join(MEMINFO), key);
     let (memory, swap) = (of("MemAvailable:")?, of("SwapFree:").unwrap_or(0));
