@@ -27,7 +27,7 @@ pub(crate) fn run(args: &HeatmapArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// The complaint where there is no such picture but a file with the name of the layer.
+/// The error for swapped arguments, if the name of the layer is that of a file.
 fn swapped(args: &HeatmapArgs) -> Option<Failure> {
     let (picture, layer) = (args.picture.display(), &args.layer);
     require_regular(Path::new(layer)).ok()?;

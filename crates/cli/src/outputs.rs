@@ -88,7 +88,7 @@ pub(crate) fn check_files<'a>(
     Ok(())
 }
 
-/// Fails unless a PNG can be written that a command makes of one file; `made` is what it makes.
+/// Fails unless `output`, a PNG that is made from one input file, can be written. `made` names it in messages.
 pub(crate) fn check_png(output: &Path, input: &Path, made: &str) -> Result<(), Failure> {
     if !has_extension(output, "png") {
         let message = format!("{} is no picture that can be written", output.display());

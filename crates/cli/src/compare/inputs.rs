@@ -57,7 +57,7 @@ fn warnings(args: &CompareArgs, reference: &PictureFile, test: &PictureFile) -> 
         file.remarks.iter().map(move |remark| format!("{name}: {remark}")).collect::<Vec<_>>()
     };
     let of_reference = of(&args.reference, reference);
-    // A picture that is compared with itself is told of once.
+    // A picture compared with itself would repeat its remarks.
     let others = of(&args.test, test).into_iter().filter(|warning| !of_reference.contains(warning));
     let others: Vec<String> = others.collect();
     [of_reference, others].concat()

@@ -48,7 +48,7 @@ pub(crate) fn require_cpu(args: &DeviceArgs) -> Result<(), Failure> {
         None => Ok(()),
         Some(choice) => Err(Failure::usage(
             format!("the physical model runs on the CPU only, not on `{choice}`"),
-            "leave out --device and --station-device",
+            "leave out --device",
         )),
     }
 }

@@ -118,12 +118,12 @@ fn more(all: usize) -> Option<String> {
     (all > MAX_LISTED).then(|| format!("  ... and {} more\n", all - MAX_LISTED))
 }
 
-/// Corners, rounded to about a hundred-thousandth of the longest edge: what lies below that is rounding.
+/// Corners, rounded to about a hundred-thousandth of the longest edge: digits below that are rounding noise.
 pub(super) fn bounds(corners: [[f32; 3]; 2]) -> String {
     let [lower, upper] = corners;
     let longest = (0..3).map(|axis| f64::from(upper[axis]) - f64::from(lower[axis])).fold(0.0, f64::max);
     let scale = 10_f64.powf(5.0 - longest.log10().floor());
-    // Without a length nothing is small. Adding 0 makes 0 of -0.
+    // A single point is shown as it is. Adding 0 turns -0 into 0.
     let rounded =
         |value: f32| if longest > 0.0 { (f64::from(value) * scale).round() / scale + 0.0 } else { value.into() };
     let [lower, upper] = corners.map(|corner| vector(corner.map(|value| rounded(value) as f32)));

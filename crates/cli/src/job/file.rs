@@ -126,8 +126,8 @@ impl JobFile {
         let tolerates_defaults = self.is_whole();
         for key in keys_of(&self.settings).into_iter().chain(read_vpls) {
             let Some(scope) = scope_of(&key) else { continue };
-            let is_tolerated = tolerates_defaults && self.is_default(&key);
-            if !scope.includes(own) && !is_tolerated {
+            let is_fine = scope.includes(own) || (tolerates_defaults && self.is_default(&key));
+            if !is_fine {
                 return Err(self.foreign(&key, own));
             }
             if !scope.includes(model) {

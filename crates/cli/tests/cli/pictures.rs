@@ -107,7 +107,7 @@ fn pictures_of_other_places_are_never_the_same() {
 }
 
 #[test]
-fn a_picture_that_is_compared_with_itself_is_told_of_once() {
+fn a_picture_compared_with_itself_repeats_no_remark() {
     let folder = Folder::new();
     write_foreign(&folder, "a.exr", |(part, whole)| {
         whole.chromaticities = Some(aces());
