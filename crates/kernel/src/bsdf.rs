@@ -31,13 +31,13 @@ pub const PLASTIC: u32 = 4;
 pub const MIRROR: u32 = 5;
 
 /// Lobes that scatter light evenly in all directions.
-pub const MATT: u32 = 1;
+pub const DIFFUSE: u32 = 1;
 /// Lobes around a direction.
 pub const GLOSSY: u32 = 2;
 /// Single directions.
 pub const SPECULAR: u32 = 4;
 /// All lobes.
-pub const ALL_LOBES: u32 = MATT | GLOSSY | SPECULAR;
+pub const ALL_LOBES: u32 = DIFFUSE | GLOSSY | SPECULAR;
 
 /// Entries of an energy table, over the square root of the cosine.
 pub const ENERGY_ENTRIES: usize = 32;
@@ -95,9 +95,9 @@ pub struct BsdfSample {
 pub fn lobes_of(bsdf: &Bsdf) -> u32 {
     let shiny = if bsdf.alpha > 0.0 { GLOSSY } else { SPECULAR };
     match bsdf.kind {
-        LAMBERT => MATT,
-        PHONG => MATT | GLOSSY,
-        PLASTIC => MATT | shiny,
+        LAMBERT => DIFFUSE,
+        PHONG => DIFFUSE | GLOSSY,
+        PLASTIC => DIFFUSE | shiny,
         MIRROR => SPECULAR,
         _ => shiny,
     }
@@ -135,8 +135,8 @@ pub fn bsdf_value(bsdf: &Bsdf, tables: &[f32], lobes: u32, wo: Vec3, wi: Vec3, t
         return Vec3::ZERO;
     }
     let mut value = Vec3::ZERO;
-    if lobes & MATT != 0 {
-        value += bsdf.diffuse * (matt_factor(bsdf, tables, wo.z, wi.z) * (1.0 / PI));
+    if lobes & DIFFUSE != 0 {
+        value += bsdf.diffuse * (diffuse_factor(bsdf, tables, wo.z, wi.z) * (1.0 / PI));
     }
     if lobes & GLOSSY != 0 {
         value += glossy_value(bsdf, tables, wo, wi);
@@ -145,7 +145,7 @@ pub fn bsdf_value(bsdf: &Bsdf, tables: &[f32], lobes: u32, wo: Vec3, wi: Vec3, t
 }
 
 /// Factor on a diffuse lobe: what a coat lets through both ways, scaled so that a white ground under it loses nothing.
-fn matt_factor(bsdf: &Bsdf, tables: &[f32], cos_o: f32, cos_i: f32) -> f32 {
+fn diffuse_factor(bsdf: &Bsdf, tables: &[f32], cos_o: f32, cos_i: f32) -> f32 {
     match bsdf.kind {
         LAMBERT | PHONG => 1.0,
         PLASTIC => {
@@ -205,19 +205,19 @@ fn mean_conductor(bsdf: &Bsdf) -> Vec3 {
 /// refract.
 fn chance_of_shine(bsdf: &Bsdf, tables: &[f32], lobes: u32, cos_o: f32) -> f32 {
     let has = lobes & lobes_of(bsdf);
-    if has & MATT == 0 {
+    if has & DIFFUSE == 0 {
         return 1.0;
     }
     if has & (GLOSSY | SPECULAR) == 0 {
         return 0.0;
     }
-    let (matt, shine) = if bsdf.kind == PHONG {
+    let (diffuse, shine) = if bsdf.kind == PHONG {
         (bsdf.diffuse.max_element(), bsdf.specular.max_element())
     } else {
         let reflected = energy_at(tables, bsdf.table, false, cos_o);
         (bsdf.diffuse.max_element() * (1.0 - reflected), reflected)
     };
-    if matt + shine > 0.0 { shine / (matt + shine) } else { 0.0 }
+    if diffuse + shine > 0.0 { shine / (diffuse + shine) } else { 0.0 }
 }
 
 /// Chance that a direction of a rough metal or dielectric is drawn from its microfacets, not from the diffuse lobe that
@@ -228,7 +228,7 @@ pub(crate) fn chance_of_facets(bsdf: &Bsdf, tables: &[f32], is_inside: bool, cos
 
 /// The density of [`sample_bsdf`] over some lobes, single directions left out.
 pub fn bsdf_pdf(bsdf: &Bsdf, tables: &[f32], lobes: u32, wo: Vec3, wi: Vec3) -> f32 {
-    if wo.z == 0.0 || wi.z == 0.0 || lobes & lobes_of(bsdf) & (MATT | GLOSSY) == 0 {
+    if wo.z == 0.0 || wi.z == 0.0 || lobes & lobes_of(bsdf) & (DIFFUSE | GLOSSY) == 0 {
         return 0.0;
     }
     if bsdf.kind == DIELECTRIC {
@@ -283,7 +283,7 @@ pub fn sample_bsdf(
     let shine = chance_of_shine(bsdf, tables, lobes, outer.z);
     if random[2] >= shine {
         let wi = sample_cosine_cone(Vec3::Z, 1.0, [random[0], random[1]]);
-        return weighted(bsdf, tables, has, outer, wi, side, MATT);
+        return weighted(bsdf, tables, has, outer, wi, side, DIFFUSE);
     }
     if has & SPECULAR != 0 {
         let wi = Vec3::new(-outer.x, -outer.y, outer.z);

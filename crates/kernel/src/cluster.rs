@@ -1,6 +1,6 @@
 //! Clusters of virtual lights, and how much one may send to a point at most (Walter et al. 2005, "Lightcuts").
 
-use crate::bsdf::{Bsdf, CONDUCTOR, GLOSSY, MATT, PHONG, PLASTIC, energy_at, lobes_of, mean_energy};
+use crate::bsdf::{Bsdf, CONDUCTOR, DIFFUSE, GLOSSY, PHONG, PLASTIC, energy_at, lobes_of, mean_energy};
 use crate::ggx::ggx_distribution;
 use crate::power::power;
 use crate::sampling::frame;
@@ -115,7 +115,7 @@ pub fn bsdf_bound(bsdf: &Bsdf, tables: &[f32], weights: [f32; 2], cos_o: f32) ->
     let lost = || 1.0 - energy_at(tables, bsdf.table, false, cos_o);
     let mean_lost = || (1.0 - mean_energy(tables, bsdf.table, false)).max(1e-4);
     let mut bound = BsdfBound { even: 0.0, facets: 0.0, alpha: 1.0, lobe: 0.0, exponent: 1.0 };
-    if lobes & MATT != 0 && weights[0] > 0.0 {
+    if lobes & DIFFUSE != 0 && weights[0] > 0.0 {
         let coat = if bsdf.kind == PLASTIC { lost() / mean_lost() } else { 1.0 };
         bound.even = weights[0] * bsdf.diffuse.max_element() * coat * (1.0 / PI);
     }

@@ -88,7 +88,7 @@ mod tests {
         }
     }
 
-    fn matt() -> Material {
+    fn diffuse() -> Material {
         Material { diffuse: Vec3::splat(0.8), ..Material::zeroed() }
     }
 
@@ -99,7 +99,7 @@ mod tests {
         for (kind, expected) in [(OMNI, 0.4 * half), (HEMISPHERE, 0.4 * half * half), (DIRECTIONAL, 0.4)] {
             let light = light(kind);
             let at = incidence(&light, point, Vec3::Y).unwrap();
-            let color = phong(&light, &matt(), &at, Vec3::Y, Vec3::Y, Rules::Repaired);
+            let color = phong(&light, &diffuse(), &at, Vec3::Y, Vec3::Y, Rules::Repaired);
             assert!((color.x - expected).abs() < 1e-6, "{kind}: {color}");
         }
         assert!(incidence(&light(OMNI), point, Vec3::NEG_Y).is_none());
@@ -109,7 +109,7 @@ mod tests {
     fn the_original_forgets_the_diffuse_term_of_directional_lights() {
         let light = light(DIRECTIONAL);
         let at = incidence(&light, Vec3::ZERO, Vec3::Y).unwrap();
-        assert_eq!(phong(&light, &matt(), &at, Vec3::Y, Vec3::Y, Rules::Original), Vec3::ZERO);
+        assert_eq!(phong(&light, &diffuse(), &at, Vec3::Y, Vec3::Y, Rules::Original), Vec3::ZERO);
     }
 
     #[test]
@@ -126,7 +126,7 @@ mod tests {
         let (a, b) = (incidence(&light, point, Vec3::Y).unwrap(), vpl_incidence(&vpl, point, Vec3::Y).unwrap());
         assert_eq!(a.to_light, b.to_light);
         assert!((a.cos_theta * a.cos_phi - b.cosines / b.dist_sq).abs() < 1e-6);
-        let material = matt();
+        let material = diffuse();
         let expected = phong(&light, &material, &a, Vec3::Y, Vec3::Y, Rules::Repaired);
         assert!((phong_vpl(&vpl, material.diffuse, &b) - expected).abs().max_element() < 1e-6);
         assert!(vpl_incidence(&vpl, point, Vec3::NEG_Y).is_none());
@@ -138,6 +138,6 @@ mod tests {
         let mut light = light(OMNI);
         light.attenuation = 100.0;
         let at = incidence(&light, Vec3::ZERO, Vec3::Y).unwrap();
-        assert_eq!(phong(&light, &matt(), &at, Vec3::Y, Vec3::Y, Rules::Repaired), Vec3::ONE);
+        assert_eq!(phong(&light, &diffuse(), &at, Vec3::Y, Vec3::Y, Rules::Repaired), Vec3::ONE);
     }
 }

@@ -3,7 +3,7 @@
 use bytemuck::Zeroable;
 use glam::Vec3;
 use lightcuts_kernel::bsdf::{
-    ALL_LOBES, Bsdf, CONDUCTOR, DIELECTRIC, GLOSSY, MATT, MIRROR, PHONG, PLASTIC, SPECULAR, Transport, bsdf_pdf,
+    ALL_LOBES, Bsdf, CONDUCTOR, DIELECTRIC, DIFFUSE, GLOSSY, MIRROR, PHONG, PLASTIC, SPECULAR, Transport, bsdf_pdf,
     bsdf_value, lobes_of, sample_bsdf,
 };
 use lightcuts_kernel::energy::energy_tables;
@@ -92,7 +92,7 @@ fn samples_have_their_density() {
             });
             let counts = cells.count(directions);
             let name = format!("{name} at {}", wo.z);
-            if lobes_of(&bsdf) & (MATT | GLOSSY) == 0 {
+            if lobes_of(&bsdf) & (DIFFUSE | GLOSSY) == 0 {
                 assert_eq!(single, f64::from(n), "{name}");
                 continue;
             }
@@ -175,8 +175,8 @@ fn lobes_add_up() {
             let [a, b, c] = random3(k, 4);
             let (wo, wi) = (Vec3::new(a - 0.5, b, 0.6).normalize(), Vec3::new(c - 0.5, a, 0.4).normalize());
             let of = |lobes| bsdf_value(&bsdf, &tables, lobes, wo, wi, Transport::Radiance);
-            assert!((of(ALL_LOBES) - of(MATT) - of(GLOSSY)).length() <= 1e-5 * of(ALL_LOBES).length(), "{name}");
-            for lobe in [MATT, GLOSSY] {
+            assert!((of(ALL_LOBES) - of(DIFFUSE) - of(GLOSSY)).length() <= 1e-5 * of(ALL_LOBES).length(), "{name}");
+            for lobe in [DIFFUSE, GLOSSY] {
                 if let Some(sample) = sample_bsdf(&bsdf, &tables, lobe, wo, [a, b, c], Transport::Radiance) {
                     assert_eq!(sample.lobe, lobe, "{name}");
                     let value = bsdf_value(&bsdf, &tables, lobe, wo, sample.wi, Transport::Radiance);

@@ -4,14 +4,14 @@
 //! Paths from the camera meet it by chance only, and that of point lights in mirrors never. Each pass shoots photons
 //! anew and counts them in a disk around each point; the disk shrinks from pass to pass, so that the mean of all passes
 //! converges (Knaus & Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach"). What photons bring is left
-//! out of paths: see `Before`.
+//! out of paths: see `PrevVertex`.
 
 use super::emission::Origins;
 use super::light_path::{Arrival, trace_light};
 use super::lightcuts::LEAST_GATHERED_ALPHA;
 use super::scene::{Interaction, Scene};
 use glam::{IVec3, Vec3};
-use lightcuts_kernel::bsdf::{CONDUCTOR, DIELECTRIC, GLOSSY, MATT, SPECULAR, lobes_of};
+use lightcuts_kernel::bsdf::{CONDUCTOR, DIELECTRIC, DIFFUSE, GLOSSY, SPECULAR, lobes_of};
 use lightcuts_kernel::photon_gather::photon_cell;
 use lightcuts_kernel::rng::hash4;
 use std::f32::consts::PI;
@@ -165,7 +165,7 @@ pub(crate) fn is_focused(at: &Interaction, lobe: u32) -> bool {
 
 /// Whether a surface shows caustics: it has a lobe that is not focused.
 pub(crate) fn spreads(at: &Interaction) -> bool {
-    lobes_of(&at.bsdf) & (MATT | GLOSSY) != 0 && !is_smooth(at)
+    lobes_of(&at.bsdf) & (DIFFUSE | GLOSSY) != 0 && !is_smooth(at)
 }
 
 /// The photon of light that arrives: it came by focused lobes to a surface that spreads it.

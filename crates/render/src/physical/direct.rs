@@ -4,7 +4,7 @@ use super::caustics::{is_focused, spreads};
 use super::scene::{Interaction, Scene};
 use super::sums::Counts;
 use glam::Vec3;
-use lightcuts_kernel::bsdf::{GLOSSY, MATT, lobes_of};
+use lightcuts_kernel::bsdf::{DIFFUSE, GLOSSY, lobes_of};
 use lightcuts_kernel::emitter::{Emitter, RECTANGLE_LIGHT, SPHERE_LIGHT, TRIANGLE_LIGHT, emitter_pdf, sample_emitter};
 use lightcuts_kernel::emitter_tree::{Lit, leaf_probability, sample_emitter_tree};
 use lightcuts_kernel::environment::{environment_pdf, environment_radiance, sample_environment};
@@ -34,7 +34,7 @@ fn power_heuristic(own: f32, other: f32) -> f32 {
 }
 
 /// Where a path came from.
-pub(crate) struct Before {
+pub(crate) struct PrevVertex {
     pub(crate) at: Interaction,
     /// Density of the direction that it took; 0 of a single direction.
     pub(crate) pdf: f32,
@@ -43,16 +43,16 @@ pub(crate) struct Before {
     /// Whether it took a focused lobe.
     pub(crate) is_focused: bool,
     /// Whether it took a lobe before that spreads light, where photons bring caustics.
-    pub(crate) is_spread: bool,
+    pub(crate) has_diffuse_bounce: bool,
 }
 
-impl Before {
+impl PrevVertex {
     /// Weight of light that was met by chance, by the density with which it is drawn from where the path was before.
     /// Light that the camera sees, or that comes from a single direction, cannot be drawn; caustics that photons bring
     /// count nothing.
     pub(crate) fn weight(before: Option<&Self>, light_pdf: impl Fn(&Interaction) -> f32) -> f32 {
         match before {
-            Some(before) if before.is_spread && before.is_focused => 0.0,
+            Some(before) if before.has_diffuse_bounce && before.is_focused => 0.0,
             Some(before) if before.pdf > 0.0 => {
                 power_heuristic(before.pdf, light_pdf(&before.at) * before.lights as f32)
             }
@@ -62,9 +62,14 @@ impl Before {
 
     /// Whether a lobe by which a path goes on is focused, and whether that or an earlier one spread light. What is met
     /// by focused lobes behind one that spreads is a caustic, which photons bring.
-    pub(crate) fn course(before: Option<&Self>, at: &Interaction, lobe: u32, has_photons: bool) -> (bool, bool) {
+    pub(crate) fn classify_bounce(
+        before: Option<&Self>,
+        at: &Interaction,
+        lobe: u32,
+        has_photons: bool,
+    ) -> (bool, bool) {
         let is_focused = is_focused(at, lobe);
-        (is_focused, has_photons && (!is_focused || before.is_some_and(|before| before.is_spread)))
+        (is_focused, has_photons && (!is_focused || before.is_some_and(|before| before.has_diffuse_bounce)))
     }
 }
 
@@ -75,7 +80,7 @@ pub(crate) struct DirectLight<'a> {
     /// Lobes from which the path goes on.
     pub(crate) lobes: u32,
     /// Where the path came from.
-    pub(crate) before: Option<&'a Before>,
+    pub(crate) before: Option<&'a PrevVertex>,
 }
 
 impl DirectLight<'_> {
@@ -87,8 +92,8 @@ impl DirectLight<'_> {
         counts: &mut Counts,
         value: impl Fn(Vec3) -> Vec3,
     ) -> Vec3 {
-        let is_caustic = !spreads(self.at) && self.before.is_some_and(|before| before.is_spread);
-        if self.lobes & lobes_of(&self.at.bsdf) & (MATT | GLOSSY) == 0 || is_caustic {
+        let is_caustic = !spreads(self.at) && self.before.is_some_and(|before| before.has_diffuse_bounce);
+        if self.lobes & lobes_of(&self.at.bsdf) & (DIFFUSE | GLOSSY) == 0 || is_caustic {
             return Vec3::ZERO;
         }
         // Each from its own part of all lights.

@@ -5,7 +5,7 @@ use super::cluster_tree::ClusterTree;
 use super::scene::{Interaction, Scene};
 use super::sums::Counts;
 use glam::Vec3;
-use lightcuts_kernel::bsdf::{GLOSSY, MATT, Transport};
+use lightcuts_kernel::bsdf::{DIFFUSE, GLOSSY, Transport};
 use lightcuts_kernel::cluster::{
     BoundReceiver, ClusterReach, LIGHT_CHILD, bsdf_bound, cluster_reach, first_probability, light_power, reach_bound,
 };
@@ -17,7 +17,7 @@ pub(crate) struct Receiver<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) at: &'a Interaction,
     /// Factors on what diffuse lobes send on, and on what glossy ones do.
-    pub(super) matt: Vec3,
+    pub(super) diffuse: Vec3,
     glossy: Vec3,
     pub(super) bound: BoundReceiver,
 }
@@ -42,14 +42,14 @@ struct Entry {
 }
 
 impl<'a> Receiver<'a> {
-    pub(crate) fn new(scene: &'a Scene<'a>, at: &'a Interaction, matt: Vec3, glossy: Vec3, clamp_sq: f32) -> Self {
+    pub(crate) fn new(scene: &'a Scene<'a>, at: &'a Interaction, diffuse: Vec3, glossy: Vec3, clamp_sq: f32) -> Self {
         let normal = if at.wo.z < 0.0 { -at.normal } else { at.normal };
         let cos_o = at.wo.z.abs();
         let toward = at.toward();
-        let weights = [matt.max_element(), glossy.max_element()];
+        let weights = [diffuse.max_element(), glossy.max_element()];
         let bsdf = bsdf_bound(&at.bsdf, &scene.world.tables, weights, cos_o);
         let bound = BoundReceiver { point: at.point, normal, mirror: normal * (2.0 * cos_o) - toward, clamp_sq, bsdf };
-        Self { scene, at, matt, glossy, bound }
+        Self { scene, at, diffuse, glossy, bound }
     }
 
     /// What a light sends if nothing is between.
@@ -72,7 +72,7 @@ impl<'a> Receiver<'a> {
                 self.at.scattered(tables, lobes, direction, Transport::Radiance) * factor
             }
         };
-        let value = of(MATT, self.matt) + of(GLOSSY, self.glossy);
+        let value = of(DIFFUSE, self.diffuse) + of(GLOSSY, self.glossy);
         value * light.intensity * (emitted / distance_sq.max(self.bound.clamp_sq))
     }
 

@@ -115,7 +115,7 @@ impl<'a> PhysicalJob<'a> {
             }
             let tasks = self.plan.tasks(&self.mixture, pass);
             let tree = if tasks.iter().any(|task| self.plan.techniques()[task.technique].uses_vpls()) {
-                self.plant(pass, placing.as_mut())
+                self.build_light_tree(pass, placing.as_mut())
             } else {
                 None
             };
@@ -174,7 +174,7 @@ impl<'a> PhysicalJob<'a> {
     }
 
     /// Virtual lights of a pass under their tree, if there is time for it.
-    fn plant(&mut self, pass: u32, placing: Option<&mut Placing<'_>>) -> Option<ClusterTree> {
+    fn build_light_tree(&mut self, pass: u32, placing: Option<&mut Placing<'_>>) -> Option<ClusterTree> {
         // What cuts go by.
         if pass > 0 {
             self.mixture.learn_light();
@@ -183,7 +183,7 @@ impl<'a> PhysicalJob<'a> {
         let Some(placing) = placing else { return Some(ClusterTree::default()) };
         let seconds = |stats: &Stats| stats.vpl_work.placing.cpu_s + stats.vpl_work.tree.cpu_s;
         let before = seconds(&self.stats);
-        let tree = placing.plant(pass, &self.watch, &mut self.stats);
+        let tree = placing.build_light_tree(pass, &self.watch, &mut self.stats);
         let image = self.settings.image;
         self.plan.learn_vpls(seconds(&self.stats) - before, image.width as usize * image.height as usize);
         tree

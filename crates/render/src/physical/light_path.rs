@@ -16,12 +16,12 @@ const MOST_SURVIVAL: f32 = 0.95;
 
 /// What light paths left.
 #[derive(Debug, Clone)]
-pub(crate) struct Left<T> {
+pub(crate) struct Deposits<T> {
     pub(crate) items: Vec<T>,
     pub(crate) rays: u64,
 }
 
-impl<T> Default for Left<T> {
+impl<T> Default for Deposits<T> {
     fn default() -> Self {
         Self { items: Vec::new(), rays: 0 }
     }
@@ -51,12 +51,12 @@ pub(crate) fn trace_light<T: Send>(
     follows: impl Fn(&Interaction, u32) -> bool + Sync,
     leave: impl Fn(&Arrival<'_>) -> Option<T> + Sync,
     is_over: &(dyn Fn() -> bool + Sync),
-) -> Left<T> {
+) -> Deposits<T> {
     let chunks = paths.div_ceil(CHUNK);
-    let parts: Vec<Left<T>> = (0..chunks)
+    let parts: Vec<Deposits<T>> = (0..chunks)
         .into_par_iter()
         .map(|chunk| {
-            let mut left = Left::default();
+            let mut left = Deposits::default();
             if is_over() {
                 return left;
             }
@@ -67,7 +67,7 @@ pub(crate) fn trace_light<T: Send>(
             left
         })
         .collect();
-    let mut all = Left { items: Vec::with_capacity(parts.iter().map(|part| part.items.len()).sum()), rays: 0 };
+    let mut all = Deposits { items: Vec::with_capacity(parts.iter().map(|part| part.items.len()).sum()), rays: 0 };
     for part in parts {
         all.items.extend(part.items);
         all.rays += part.rays;
@@ -82,7 +82,7 @@ fn follow<T>(
     share: f32,
     follows: impl Fn(&Interaction, u32) -> bool,
     leave: impl Fn(&Arrival<'_>) -> Option<T>,
-    left: &mut Left<T>,
+    left: &mut Deposits<T>,
 ) {
     let tables = &scene.world.tables[..];
     let Some(departure) = origins.depart(scene, randoms) else { return };

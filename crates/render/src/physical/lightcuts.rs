@@ -6,7 +6,7 @@
 
 use super::bundle::{Bundle, Clusters, Cutting, Fineness};
 use super::cluster_tree::ClusterTree;
-use super::direct::{Before, DirectLight};
+use super::direct::{DirectLight, PrevVertex};
 use super::gather::{CutHeap, Gathered, Receiver};
 use super::pass::{SamplePass, Start};
 use super::path::MAX_VERTICES;
@@ -15,7 +15,9 @@ use super::scene::{Cone, Interaction, Scene};
 use super::sums::{Counts, FirstHit, Radiance, Sampled};
 use crate::settings::{Physical, Strategy};
 use glam::Vec3;
-use lightcuts_kernel::bsdf::{ALL_LOBES, Bsdf, CONDUCTOR, GLOSSY, MATT, PHONG, PLASTIC, SPECULAR, Transport, lobes_of};
+use lightcuts_kernel::bsdf::{
+    ALL_LOBES, Bsdf, CONDUCTOR, DIFFUSE, GLOSSY, PHONG, PLASTIC, SPECULAR, Transport, lobes_of,
+};
 use lightcuts_kernel::ray::{Hit, Ray};
 use lightcuts_world::bvh::LANES;
 use std::cell::RefCell;
@@ -60,13 +62,13 @@ pub(crate) struct Pending {
     vertex: u32,
     at: Interaction,
     /// Factors on what its diffuse and its glossy lobes send.
-    matt: Vec3,
+    diffuse: Vec3,
     glossy: Vec3,
 }
 
 impl Pending {
     fn receiver<'a>(&'a self, scene: &'a Scene<'a>, clamp: f32) -> Receiver<'a> {
-        Receiver::new(scene, &self.at, self.matt, self.glossy, clamp * clamp)
+        Receiver::new(scene, &self.at, self.diffuse, self.glossy, clamp * clamp)
     }
 }
 
@@ -83,14 +85,14 @@ thread_local! {
 /// A path on its way.
 struct Walk {
     /// Factor on what the next vertex sends by its diffuse lobes.
-    matt: Vec3,
+    diffuse: Vec3,
     /// The same that a short ray may give back, before its length is known.
     compensated: Vec3,
     /// Factor on everything else that it sends.
     rest: Vec3,
     /// Whether no gathering vertex lies before it.
     is_first: bool,
-    before: Option<Before>,
+    before: Option<PrevVertex>,
     ray: Ray,
     cone: Cone,
     /// Surfaces before the next one.
@@ -212,18 +214,19 @@ impl Gathering<'_> {
         let (vertex, ray) = (walk.vertex, walk.ray);
         let Some(hit) = hit else {
             let (light, pdf) = scene.environment_light(ray.direction);
-            sampled.radiance.add(vertex, walk.rest * light * Before::weight(walk.before.as_ref(), |_| pdf));
+            sampled.radiance.add(vertex, walk.rest * light * PrevVertex::weight(walk.before.as_ref(), |_| pdf));
             return None;
         };
-        walk.matt += walk.compensated * self.lightcuts.compensation(hit.t);
+        walk.diffuse += walk.compensated * self.lightcuts.compensation(hit.t);
         let [r0, r1, r2, mixed] = randoms.next();
         let at = scene.interaction(&ray, &hit, walk.cone, mixed);
         sampled.first.get_or_insert_with(|| FirstHit::new(&at, &ray, hit.t));
         if at.emitted != Vec3::ZERO {
-            let weight = Before::weight(walk.before.as_ref(), |from| scene.light_pdf(from, &at, ray.direction, hit.t));
+            let weight =
+                PrevVertex::weight(walk.before.as_ref(), |from| scene.light_pdf(from, &at, ray.direction, hit.t));
             sampled.radiance.add(vertex, walk.rest * at.emitted * weight);
         }
-        let lobes = if walk.matt == Vec3::ZERO { ALL_LOBES & !MATT } else { ALL_LOBES };
+        let lobes = if walk.diffuse == Vec3::ZERO { ALL_LOBES & !DIFFUSE } else { ALL_LOBES };
         if lobes & lobes_of(&at.bsdf) == 0 || vertex + 1 == MAX_VERTICES {
             return None;
         }
@@ -253,11 +256,11 @@ impl Gathering<'_> {
         let mut next = walk.scatter(scene, &at, hit.t, &drawn)?;
         if vertex + 1 >= SURE_VERTICES {
             let [survival, ..] = randoms.next();
-            let survives = next.rest.max(next.matt + next.compensated).max_element().min(0.95);
+            let survives = next.rest.max(next.diffuse + next.compensated).max_element().min(0.95);
             if survival >= survives {
                 return None;
             }
-            next.matt /= survives;
+            next.diffuse /= survives;
             next.rest /= survives;
             next.compensated /= survives;
         }
@@ -276,9 +279,9 @@ impl Gathering<'_> {
         sampled: &mut Sampled,
     ) {
         let has = gathered_lobes(&at.bsdf);
-        let matt = if has & MATT != 0 { walk.matt } else { Vec3::ZERO };
+        let diffuse = if has & DIFFUSE != 0 { walk.diffuse } else { Vec3::ZERO };
         let glossy = if has & GLOSSY != 0 { walk.rest } else { Vec3::ZERO };
-        if matt == Vec3::ZERO && glossy == Vec3::ZERO {
+        if diffuse == Vec3::ZERO && glossy == Vec3::ZERO {
             return;
         }
         let Self { lightcuts: Lightcuts { tree, clamp, .. }, slot, pixel, .. } = *self;
@@ -286,11 +289,11 @@ impl Gathering<'_> {
             _ if !walk.is_first => DRAWN_LIGHTS,
             Strategy::Stochastic => STOCHASTIC_LIGHTS,
             _ => {
-                pending.push(Pending { slot, pixel, vertex: walk.vertex, at: *at, matt, glossy });
+                pending.push(Pending { slot, pixel, vertex: walk.vertex, at: *at, diffuse, glossy });
                 return;
             }
         };
-        let receiver = Receiver::new(&self.pass.scene, at, matt, glossy, clamp * clamp);
+        let receiver = Receiver::new(&self.pass.scene, at, diffuse, glossy, clamp * clamp);
         let light = receiver.drawn(tree, drawn, || randoms.next()[0], counts);
         sampled.radiance.add(walk.vertex + 2, light);
         if walk.is_first {
@@ -306,13 +309,13 @@ pub(crate) fn gathered_lobes(bsdf: &Bsdf) -> u32 {
         CONDUCTOR | PLASTIC => bsdf.alpha >= LEAST_GATHERED_ALPHA,
         _ => false,
     };
-    lobes_of(bsdf) & if is_wide { MATT | GLOSSY } else { MATT }
+    lobes_of(bsdf) & if is_wide { DIFFUSE | GLOSSY } else { DIFFUSE }
 }
 
 impl Walk {
     fn new(ray: Ray, cone: Cone) -> Self {
         Self {
-            matt: Vec3::ONE,
+            diffuse: Vec3::ONE,
             compensated: Vec3::ZERO,
             rest: Vec3::ONE,
             is_first: true,
@@ -327,8 +330,8 @@ impl Walk {
     fn value(&self, scene: &Scene<'_>, at: &Interaction, direction: Vec3) -> Vec3 {
         let tables = &scene.world.tables[..];
         let of = |lobes| at.scattered(tables, lobes, direction, Transport::Radiance);
-        let matt = if self.matt == Vec3::ZERO { Vec3::ZERO } else { of(MATT) * self.matt };
-        matt + of(GLOSSY) * self.rest
+        let diffuse = if self.diffuse == Vec3::ZERO { Vec3::ZERO } else { of(DIFFUSE) * self.diffuse };
+        diffuse + of(GLOSSY) * self.rest
     }
 
     /// Goes on from a vertex in a drawn direction.
@@ -336,28 +339,29 @@ impl Walk {
         let tables = &scene.world.tables[..];
         let Drawn { lobes, lights, random, has_photons } = *drawn;
         let sample = at.sample(tables, lobes, random, Transport::Radiance)?;
-        let (is_focused, is_spread) = Before::course(self.before.as_ref(), at, sample.lobe, has_photons);
+        let (is_focused, has_diffuse_bounce) =
+            PrevVertex::classify_bounce(self.before.as_ref(), at, sample.lobe, has_photons);
         let next = Self {
-            matt: Vec3::ZERO,
+            diffuse: Vec3::ZERO,
             compensated: Vec3::ZERO,
             rest: Vec3::ZERO,
             is_first: self.is_first,
-            before: Some(Before { at: *at, pdf: sample.pdf, lights, is_focused, is_spread }),
+            before: Some(PrevVertex { at: *at, pdf: sample.pdf, lights, is_focused, has_diffuse_bounce }),
             ray: at.ray(sample.wi, f32::INFINITY),
             cone: if sample.pdf == 0.0 { self.cone.after(distance) } else { Cone::NONE },
             vertex: self.vertex + 1,
         };
         if sample.lobe == SPECULAR {
             let factor = self.rest * sample.weight;
-            return (factor != Vec3::ZERO).then_some(Self { matt: factor, rest: factor, ..next });
+            return (factor != Vec3::ZERO).then_some(Self { diffuse: factor, rest: factor, ..next });
         }
         let of = |lobes| at.scattered(tables, lobes, sample.wi, Transport::Radiance) / sample.pdf;
-        let matt = if lobes & MATT != 0 { of(MATT) * self.matt } else { Vec3::ZERO };
+        let diffuse = if lobes & DIFFUSE != 0 { of(DIFFUSE) * self.diffuse } else { Vec3::ZERO };
         let glossy = of(GLOSSY) * self.rest;
         let is_gathered = gathered_lobes(&at.bsdf) & GLOSSY != 0;
-        let (gathered, followed) = if is_gathered { (matt + glossy, Vec3::ZERO) } else { (matt, glossy) };
+        let (gathered, followed) = if is_gathered { (diffuse + glossy, Vec3::ZERO) } else { (diffuse, glossy) };
         let is_first = self.is_first && followed.max_element() > gathered.max_element();
         let rest = gathered + followed;
-        (rest != Vec3::ZERO).then_some(Self { matt: followed, compensated: gathered, rest, is_first, ..next })
+        (rest != Vec3::ZERO).then_some(Self { diffuse: followed, compensated: gathered, rest, is_first, ..next })
     }
 }

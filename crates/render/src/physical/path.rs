@@ -1,7 +1,7 @@
 //! Path tracing: the reference (Kajiya 1986), with light drawn at every vertex and weighed by multiple importance
 //! sampling (Veach 1997).
 
-use super::direct::{Before, DirectLight};
+use super::direct::{DirectLight, PrevVertex};
 use super::pass::{SamplePass, Start};
 use super::scene::{Cone, Interaction};
 use super::sums::{Counts, FirstHit, Radiance};
@@ -22,11 +22,11 @@ pub(crate) fn trace_path(pass: &SamplePass<'_>, start: Start, counts: &mut Count
     let mut throughput = Vec3::ONE;
     let mut sum = Radiance::default();
     let mut first = None;
-    let mut before: Option<Before> = None;
+    let mut before: Option<PrevVertex> = None;
     for vertex in 0..MAX_VERTICES {
         let Some(hit) = next else {
             let (light, pdf) = scene.environment_light(ray.direction);
-            sum.add(vertex, throughput * light * Before::weight(before.as_ref(), |_| pdf));
+            sum.add(vertex, throughput * light * PrevVertex::weight(before.as_ref(), |_| pdf));
             break;
         };
         let [r0, r1, r2, r3] = randoms.next();
@@ -34,7 +34,7 @@ pub(crate) fn trace_path(pass: &SamplePass<'_>, start: Start, counts: &mut Count
         first.get_or_insert_with(|| FirstHit::new(&at, &ray, hit.t));
         if at.emitted != Vec3::ZERO {
             let pdf = |from: &Interaction| scene.light_pdf(from, &at, ray.direction, hit.t);
-            sum.add(vertex, throughput * at.emitted * Before::weight(before.as_ref(), pdf));
+            sum.add(vertex, throughput * at.emitted * PrevVertex::weight(before.as_ref(), pdf));
         }
         let point = randoms.next();
         let value = |direction| at.scattered(tables, ALL_LOBES, direction, Transport::Radiance);
@@ -58,8 +58,9 @@ pub(crate) fn trace_path(pass: &SamplePass<'_>, start: Start, counts: &mut Count
         }
         // Behind a diffuse vertex textures are looked up at points, as light paths do.
         cone = if sample.lobe == SPECULAR { cone.after(hit.t) } else { Cone::NONE };
-        let (is_focused, is_spread) = Before::course(before.as_ref(), &at, sample.lobe, caustics.is_some());
-        before = Some(Before { at, pdf: sample.pdf, lights: 1, is_focused, is_spread });
+        let (is_focused, has_diffuse_bounce) =
+            PrevVertex::classify_bounce(before.as_ref(), &at, sample.lobe, caustics.is_some());
+        before = Some(PrevVertex { at, pdf: sample.pdf, lights: 1, is_focused, has_diffuse_bounce });
         ray = at.ray(sample.wi, f32::INFINITY);
         next = scene.closest(&ray);
         counts.bounces += 1;

@@ -64,7 +64,7 @@ impl<'a> Placing<'a> {
     }
 
     /// Virtual lights of a pass under their tree; `None` if there is no time for it.
-    pub(crate) fn plant(&mut self, pass: u32, watch: &Watch<'_>, stats: &mut Stats) -> Option<ClusterTree> {
+    pub(crate) fn build_light_tree(&mut self, pass: u32, watch: &Watch<'_>, stats: &mut Stats) -> Option<ClusterTree> {
         let mut work: VplWork = stats.vpl_work;
         let lights = work.placing.add(|| self.place(pass, watch, stats));
         let stream = self.stream(REPRESENTATIVES, pass);

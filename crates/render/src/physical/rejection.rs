@@ -10,7 +10,7 @@ use super::randoms::Randoms;
 use super::scene::{Cone, Interaction, Scene};
 use super::sums::Counts;
 use glam::Vec3;
-use lightcuts_kernel::bsdf::{ALL_LOBES, MATT, SPECULAR, Transport};
+use lightcuts_kernel::bsdf::{ALL_LOBES, DIFFUSE, SPECULAR, Transport};
 use lightcuts_kernel::cluster::light_power;
 use lightcuts_kernel::lens::{Lens, lens_ray};
 use lightcuts_kernel::virtual_light::VirtualLight;
@@ -102,7 +102,7 @@ fn place(scene: &Scene<'_>, lens: &Lens, randoms: &mut Randoms) -> Option<(Inter
         let hit = scene.closest(&ray)?;
         let [u, v, choice, mixed] = randoms.next();
         let at = scene.interaction(&ray, &hit, Cone::NONE, mixed);
-        if gathered_lobes(&at.bsdf) & MATT != 0 {
+        if gathered_lobes(&at.bsdf) & DIFFUSE != 0 {
             return Some((at, factor));
         }
         let sample = at.sample(&scene.world.tables, ALL_LOBES, [u, v, choice], Transport::Radiance)?;

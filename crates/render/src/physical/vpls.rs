@@ -1,10 +1,10 @@
 //! Station 3: virtual point lights where light paths meet diffuse surfaces (Keller 1997, "Instant Radiosity").
 
 use super::emission::Origins;
-use super::light_path::{Arrival, Left, trace_light};
+use super::light_path::{Arrival, Deposits, trace_light};
 use super::rejection::{Judged, Rejection};
 use super::scene::Scene;
-use lightcuts_kernel::bsdf::{MATT, PLASTIC, energy_at, lobes_of, mean_energy};
+use lightcuts_kernel::bsdf::{DIFFUSE, PLASTIC, energy_at, lobes_of, mean_energy};
 use lightcuts_kernel::virtual_light::{VirtualLight, pack_direction, virtual_table};
 use std::f32::consts::PI;
 
@@ -17,7 +17,7 @@ pub(crate) fn trace_vpls(
     paths: u32,
     stream: u32,
     is_over: &(dyn Fn() -> bool + Sync),
-) -> Left<Judged> {
+) -> Deposits<Judged> {
     let tables = &scene.world.tables[..];
     trace_light(
         scene,
@@ -40,7 +40,7 @@ pub(crate) fn trace_vpls(
 fn virtual_light(arrival: &Arrival<'_>, tables: &[f32]) -> Option<VirtualLight> {
     let Arrival { at, from, power, .. } = *arrival;
     let bsdf = &at.bsdf;
-    if lobes_of(bsdf) & MATT == 0 {
+    if lobes_of(bsdf) & DIFFUSE == 0 {
         return None;
     }
     let coat = if bsdf.kind == PLASTIC {

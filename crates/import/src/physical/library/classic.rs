@@ -10,7 +10,7 @@ use lightcuts_scene::physical::{Scattering, Tint};
 const EXPONENTS: (f32, f32) = (1.0, 1e6);
 
 /// Illumination models without highlights, with mirrors, and with glass.
-const MATT: [u8; 2] = [0, 1];
+const WITHOUT_HIGHLIGHT: [u8; 2] = [0, 1];
 const MIRRORS: [u8; 3] = [3, 5, 8];
 const GLASSES: [u8; 4] = [4, 6, 7, 9];
 /// Those that ask for rays, which every material gets here.
@@ -33,7 +33,7 @@ impl Converter<'_, '_> {
             }
             _ => {}
         }
-        let has_highlight = !model.is_some_and(|model| MATT.contains(&model));
+        let has_highlight = !model.is_some_and(|model| WITHOUT_HIGHLIGHT.contains(&model));
         let specular = if has_highlight { self.specular() } else { Vec3::ZERO };
         let scale = self.scale(diffuse.color, specular);
         let diffuse = Tint { color: diffuse.color * scale, ..diffuse };

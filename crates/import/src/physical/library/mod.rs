@@ -173,7 +173,7 @@ impl Converter<'_, '_> {
     }
 
     /// What is used in place of a value, with a warning if it is another one.
-    fn used<T: PartialEq + Display>(&mut self, keyword: &str, value: T, used: T) -> T {
+    fn used<T: PartialEq + Display + Copy>(&mut self, keyword: &str, value: T, used: T) -> T {
         if used != value {
             let name = &self.found.desc.name;
             self.warn(keyword, &format!("`{keyword}` of the material `{name}` is {value}: {used} is used"));

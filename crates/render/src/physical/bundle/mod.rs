@@ -82,7 +82,7 @@ impl<'a> Bundle<'a> {
             front: vectors(&|receiver| receiver.at.point + receiver.at.lift),
             back: vectors(&|receiver| receiver.at.point - receiver.at.face * (side(receiver) * receiver.at.epsilon)),
             normals: frames(&|receiver| receiver.bound.normal),
-            color: vectors(&|receiver| receiver.at.bsdf.diffuse * (1.0 / PI) * receiver.matt),
+            color: vectors(&|receiver| receiver.at.bsdf.diffuse * (1.0 / PI) * receiver.diffuse),
             even: each(&|receiver| receiver.bound.bsdf.even),
             is_shiny: any_shiny,
             mirrors: if any_shiny { frames(&|receiver| receiver.bound.mirror) } else { Frames::default() },

@@ -1,6 +1,6 @@
 //! Pictures of which every value is known.
 
-use super::scenes::{light, looking, matt, mean, object, point, rectangle, render, settings, spot_down};
+use super::scenes::{diffuse, light, looking, mean, object, point, rectangle, render, settings, spot_down};
 use crate::settings::{Integrator, Strategy};
 use glam::Vec3;
 use lightcuts_scene::Location;
@@ -32,7 +32,7 @@ fn white_furnace() {
             objects: vec![object(PhysicalShape::Sphere { center: glam::DVec3::ZERO, radius: 1.0 }, 0)],
             materials: vec![
                 SurfaceDesc { scattering, ..SurfaceDesc::default() },
-                matt(Vec3::ONE),
+                diffuse(Vec3::ONE),
                 SurfaceDesc {
                     scattering: Scattering::Mix { first: SurfaceId(1), second: SurfaceId(1), weight: 0.5, image: None },
                     ..SurfaceDesc::default()
@@ -63,7 +63,7 @@ fn a_point_light_over_a_plane() {
     let scene = PhysicalScene {
         camera: looking(Vec3::new(0.0, 5.0, 0.01), Vec3::ZERO, 40.0),
         objects: vec![rectangle(Vec3::ZERO, Vec3::Y, Vec3::Z, 50.0, 50.0, 0)],
-        materials: vec![matt(Vec3::splat(0.5))],
+        materials: vec![diffuse(Vec3::splat(0.5))],
         lights: vec![point(Vec3::Y * 2.0, Vec3::splat(10.0))],
         ..PhysicalScene::default()
     };
@@ -86,7 +86,7 @@ fn a_mirrored_spot() {
             rectangle(Vec3::Y * 2.0, Vec3::NEG_Y, Vec3::Z, 20.0, 20.0, 0),
         ],
         materials: vec![
-            matt(Vec3::splat(0.01)),
+            diffuse(Vec3::splat(0.01)),
             SurfaceDesc {
                 scattering: Scattering::Mirror { reflectance: Vec3::splat(0.9).into() },
                 ..SurfaceDesc::default()
@@ -126,7 +126,7 @@ fn two_parallel_plates() {
             rectangle(Vec3::ZERO, Vec3::Y, Vec3::Z, 1.0, 1.0, 0),
             rectangle(Vec3::Y, Vec3::NEG_Y, Vec3::Z, 1.0, 1.0, 1),
         ],
-        materials: vec![matt(Vec3::splat(0.5)), light(Vec3::ONE)],
+        materials: vec![diffuse(Vec3::splat(0.5)), light(Vec3::ONE)],
         ..PhysicalScene::default()
     };
     let rendering = render(&scene, &settings(Integrator::Path, 32, 64));
@@ -138,12 +138,12 @@ fn two_parallel_plates() {
 
 /// A point light in the middle of a diffuse sphere: I / r^2 rho / pi, and all that is reflected again: over 1 - rho.
 #[test]
-fn a_light_in_a_matt_sphere() {
+fn a_light_in_a_diffuse_sphere() {
     let albedo = 0.6;
     let scene = PhysicalScene {
         camera: looking(Vec3::new(0.0, 0.0, 0.5), Vec3::new(0.0, 0.3, -2.0), 60.0),
         objects: vec![object(PhysicalShape::Sphere { center: glam::DVec3::ZERO, radius: 2.0 }, 0)],
-        materials: vec![matt(Vec3::splat(albedo))],
+        materials: vec![diffuse(Vec3::splat(albedo))],
         lights: vec![point(Vec3::ZERO, Vec3::ONE)],
         ..PhysicalScene::default()
     };

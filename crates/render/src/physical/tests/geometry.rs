@@ -1,7 +1,7 @@
 //! Where a scene lies, how large it is and what its surfaces share with others does not change its picture.
 
 use super::scenes::{
-    caustic_room, instance, light, looking, matt, mean, moved, object, point, quad, rectangle, render, room, scaled,
+    caustic_room, diffuse, instance, light, looking, mean, moved, object, point, quad, rectangle, render, room, scaled,
     settings,
 };
 use crate::settings::{Integrator, Strategy};
@@ -50,7 +50,7 @@ fn large_spheres_have_no_bands() {
         let scene = PhysicalScene {
             camera: looking(Vec3::new(0.0, 2.0, 6.0), Vec3::new(0.0, 0.5, 0.0), 35.0),
             objects: vec![ball(-f64::from(radius), radius), ball(0.5, 0.5)],
-            materials: vec![matt(Vec3::splat(0.5))],
+            materials: vec![diffuse(Vec3::splat(0.5))],
             environment: Some(sky(0.5)),
             ..PhysicalScene::default()
         };
@@ -79,7 +79,7 @@ fn closed_boxes_leak_nothing() {
             camera: looking(Vec3::new(4.0, 3.0, 4.0), Vec3::ZERO, 45.0),
             objects: vec![rectangle(Vec3::NEG_Y, Vec3::Y, Vec3::Z, 20.0, 20.0, 0)],
             lights: vec![point(Vec3::Y * 1.5, Vec3::splat(100.0))],
-            materials: vec![matt(Vec3::splat(0.8))],
+            materials: vec![diffuse(Vec3::splat(0.8))],
             ..PhysicalScene::default()
         };
         for side in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
@@ -179,7 +179,7 @@ fn lamps_in_one_plane_with_others_shine_once() {
             camera: camera(),
             objects,
             meshes,
-            materials: vec![matt(Vec3::splat(0.5)), matt(Vec3::ZERO), light(Vec3::splat(4.0))],
+            materials: vec![diffuse(Vec3::splat(0.5)), diffuse(Vec3::ZERO), light(Vec3::splat(4.0))],
             ..PhysicalScene::default()
         };
         let turned = turned(&scene, k);
@@ -227,7 +227,7 @@ fn lamps_back_to_back_shine_to_both_sides() {
         let scene = PhysicalScene {
             camera: camera(),
             objects: lamps,
-            materials: vec![matt(Vec3::splat(0.5)), light(Vec3::splat(4.0))],
+            materials: vec![diffuse(Vec3::splat(0.5)), light(Vec3::splat(4.0))],
             ..PhysicalScene::default()
         };
         for integrator in BOTH {
@@ -245,7 +245,7 @@ fn a_sphere_that_is_there_twice_shines_once() {
     let scene = |objects| PhysicalScene {
         camera: camera(),
         objects,
-        materials: vec![matt(Vec3::splat(0.5)), light(Vec3::splat(4.0))],
+        materials: vec![diffuse(Vec3::splat(0.5)), light(Vec3::splat(4.0))],
         ..PhysicalScene::default()
     };
     // pi sin^2 of the half angle, times radiance and albedo over pi.
@@ -263,8 +263,10 @@ fn a_sphere_that_is_there_twice_shines_once() {
 fn holes_show_what_lies_in_their_place() {
     let pixels = (0..16).map(|k| [200, 20, 20, if k % 4 < 2 { 255 } else { 0 }]).collect();
     let mask = PixelImage { name: "half".to_owned(), width: 4, height: 4, pixels: Pixels::Srgb(pixels) };
-    let decal =
-        SurfaceDesc { alpha: Some(AlphaMask { image: ImageId(0), threshold: 0.5 }), ..matt(Vec3::new(0.8, 0.0, 0.0)) };
+    let decal = SurfaceDesc {
+        alpha: Some(AlphaMask { image: ImageId(0), threshold: 0.5 }),
+        ..diffuse(Vec3::new(0.8, 0.0, 0.0))
+    };
     for k in 0..8 {
         let center = Vec3::new(0.1, 0.2, -0.3) * k as f32;
         let mut objects =
@@ -281,7 +283,7 @@ fn holes_show_what_lies_in_their_place() {
             },
             objects,
             images: vec![mask.clone()],
-            materials: vec![decal.clone(), matt(Vec3::new(0.0, 0.8, 0.0))],
+            materials: vec![decal.clone(), diffuse(Vec3::new(0.0, 0.8, 0.0))],
             environment: Some(sky(1.0)),
             ..PhysicalScene::default()
         };

@@ -27,13 +27,13 @@ pub(super) fn rectangle(
     object(PhysicalShape::Rectangle { center: center.as_dvec3(), normal, head, width, height }, material)
 }
 
-pub(super) fn matt(albedo: Vec3) -> SurfaceDesc {
+pub(super) fn diffuse(albedo: Vec3) -> SurfaceDesc {
     SurfaceDesc { scattering: Scattering::Lambert { albedo: albedo.into() }, ..SurfaceDesc::default() }
 }
 
 pub(super) fn light(radiance: Vec3) -> SurfaceDesc {
     let emission = Some(EmissionDesc { radiance, image: None, two_sided: false });
-    SurfaceDesc { emission, ..matt(Vec3::ZERO) }
+    SurfaceDesc { emission, ..diffuse(Vec3::ZERO) }
 }
 
 pub(super) fn point(position: Vec3, intensity: Vec3) -> EmitterDesc {
@@ -86,9 +86,9 @@ pub(super) fn mean(rendering: &PhysicalRendering) -> glam::DVec3 {
 pub(super) fn room(occluded: bool) -> PhysicalScene {
     let (white, red, green) = (Vec3::splat(0.75), Vec3::new(0.6, 0.1, 0.08), Vec3::new(0.12, 0.5, 0.1));
     let materials = vec![
-        matt(white),
-        matt(red),
-        matt(green),
+        diffuse(white),
+        diffuse(red),
+        diffuse(green),
         light(Vec3::new(16.0, 13.0, 9.0)),
         SurfaceDesc {
             scattering: Scattering::Plastic { albedo: Vec3::new(0.2, 0.3, 0.7).into(), ior: 1.5, roughness: 0.5 },
