@@ -6,6 +6,7 @@ use std::path::Path;
 
 use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
 use image::{DynamicImage, ExtendedColorType, ImageDecoder as _, ImageEncoder as _};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::limits::{Claim, MAX_EXPANSION, PictureLimits, check_writable};
@@ -78,10 +79,14 @@ pub fn write_png_with_text(
 }
 
 fn encoded(image: &Image, transfer: Transfer) -> image::ImageResult<Vec<u8>> {
-    let values: Vec<u8> = image.pixels().iter().flatten().map(|value| transfer.quantise(*value)).collect();
+    let mut codes = vec![0; 3 * image.pixels().len()];
+    let quantise = |(codes, pixel): (&mut [u8], &[f32; 3])| {
+        codes.copy_from_slice(&pixel.map(|value| transfer.quantise(value)));
+    };
+    codes.par_chunks_exact_mut(3).zip(image.pixels()).for_each(quantise);
     let mut bytes = Vec::new();
-    PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive).write_image(
-        &values,
+    PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive).write_image(
+        &codes,
         image.width() as u32, // the casts hold: `check_writable` bounds both sides
         image.height() as u32,
         ExtendedColorType::Rgb8,

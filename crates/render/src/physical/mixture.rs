@@ -139,6 +139,7 @@ impl Mixture {
         let (width, height) = (self.width, self.height);
         let tiles = self.tiles.len();
         let Task { tile, technique, extent } = sampled.task;
+        let is_first = (0..self.canvases.len()).all(|technique| self.shown(technique, tile) == 0);
         let canvas = self.canvases[technique].get_or_insert_with(|| Canvas {
             all: Film::new(width as u32, height as u32),
             indirect: Film::new(width as u32, height as u32),
@@ -160,6 +161,10 @@ impl Mixture {
         canvas.shown[tile] += samples;
         let places = self.tiles[tile].pixels().map(pixel);
         for ((place, sums), moments) in places.zip(&sampled.pixels).zip(&sampled.moments) {
+            if is_first {
+                // The system's zeros cost twice where they are read before they are written to.
+                self.pixels[place] = PixelSums::default();
+            }
             self.pixels[place].add(sums);
             canvas.moments[place].add(moments);
         }
