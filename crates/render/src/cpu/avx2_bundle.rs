@@ -98,8 +98,9 @@ impl<'a> Bundle<'a> {
         meet(self.packet.origin, self.reciprocal, self.packet.t_min, limit, (splat3(lower), splat3(upper)))
     }
 
-    /// Which of the rays in `asked` hit a triangle.
+    /// Which of the rays in `asked` hit a triangle. Never inlined: rays that are no bundle would pay for its stack.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline(never)]
     pub(super) fn any_hits(&self, geometry: &Geometry<'_>, rules: Rules, asked: u32) -> u32 {
         let limit = range(self.packet.t_max, asked).1;
         let least = min_determinant(rules);
