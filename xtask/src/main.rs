@@ -5,7 +5,6 @@ mod browser;
 mod ci;
 #[cfg(test)]
 mod docs;
-mod examples;
 mod gallery;
 mod model_files;
 mod models;

@@ -2,7 +2,7 @@
 
 use crate::project::{self, shown};
 use crate::tally::Tally;
-use crate::{browser, examples, vulkan};
+use crate::{browser, vulkan};
 use anyhow::{Context as _, Result, bail};
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, Stdio};
@@ -20,11 +20,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     vulkan::provide(!args.no_install);
     if has_nextest() {
         println!("tests run with cargo-nextest, documentation examples with cargo test");
-        // First, so that the last line is that of nextest. Of packages that have some: rustdoc takes seconds to find
-        // none.
-        let packages = examples::packages()?;
-        let packages = packages.iter().flat_map(|package| ["--package", package]);
-        run_counted(cargo().args(["test", "--doc", "--no-fail-fast"]).args(packages), "documentation examples")?;
+        // First, so that the last line is that of nextest. Of the whole workspace: for some of its packages alone, others'
+        // features would differ, and half of what nextest needs would be compiled once more.
+        run_counted(cargo().args(["test", "--doc", "--workspace", "--no-fail-fast"]), "documentation examples")?;
         project::run(cargo().args(["nextest", "run", "--workspace", "--no-fail-fast"]))
     } else {
         println!("tests run with cargo test; cargo-nextest is used where it is installed");

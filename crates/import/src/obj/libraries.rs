@@ -11,6 +11,9 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+/// What messages call them.
+const KIND: &str = "material library";
+
 /// Libraries by the identity of their files; why not, for those that cannot be read.
 #[derive(Debug, Default)]
 pub(crate) struct Libraries {
@@ -47,6 +50,18 @@ impl Libraries {
         model.materials.iter().map(|(name, place)| find(name, place)).collect()
     }
 
+    /// Warns about libraries of the model at `path` that are not found though nothing of them is used: they may be missed.
+    pub(crate) fn warn_of_unused(files: &Files<'_>, report: &mut Report, model: &Model, path: &Path) {
+        for (line, place) in &model.libraries {
+            for name in names(files, line, path) {
+                if let Err(error) = files.find(KIND, &name, Some(path)) {
+                    let message = format!("{error}; none of its materials is used");
+                    report.warn(|| place.clone().with_message(&message));
+                }
+            }
+        }
+    }
+
     /// The libraries of one `mtllib` line; what cannot be read is warned about.
     fn of_line(
         &mut self,
@@ -56,13 +71,8 @@ impl Libraries {
         place: &Fault,
         model: &Path,
     ) -> Vec<Rc<Library>> {
-        let readings = library_names(line);
-        let found = |name: &String| files.find("material library", name, Some(model)).is_ok();
-        let complete = readings.iter().find(|names| names.iter().all(found));
-        let best = complete.or_else(|| readings.iter().skip(1).find(|names| names.iter().any(found)));
-        let names = best.or(readings.get(1)).or(readings.first()).cloned().unwrap_or_default();
         let mut libraries = Vec::new();
-        for name in names {
+        for name in names(files, line, model) {
             match self.named(files, report, &name, model) {
                 Ok(library) => libraries.push(library),
                 Err(message) => report.warn(|| place.clone().with_message(&message)),
@@ -79,7 +89,7 @@ impl Libraries {
         name: &str,
         model: &Path,
     ) -> Result<Rc<Library>, String> {
-        let path = files.find("material library", name, Some(model)).map_err(|error| error.to_string())?;
+        let path = files.find(KIND, name, Some(model)).map_err(|error| error.to_string())?;
         let identity = files.identity(&path);
         if identity == files.identity(model) {
             return Err(format!("the material library `{name}` is the model itself"));
@@ -93,9 +103,18 @@ impl Libraries {
     }
 }
 
+/// The names in an `mtllib` line, of the readings of its blanks the one of which most files are there.
+fn names(files: &Files<'_>, line: &str, model: &Path) -> Vec<String> {
+    let readings = library_names(line);
+    let found = |name: &String| files.find(KIND, name, Some(model)).is_ok();
+    let complete = readings.iter().find(|names| names.iter().all(found));
+    let best = complete.or_else(|| readings.iter().skip(1).find(|names| names.iter().any(found)));
+    best.or(readings.get(1)).or(readings.first()).cloned().unwrap_or_default()
+}
+
 fn load(files: &mut Files<'_>, report: &mut Report, path: &Path) -> Result<Rc<Library>, String> {
     let limit = files.limits.material_bytes;
-    let bytes = files.read("material library", path, limit).map_err(|error| error.to_string())?;
+    let bytes = files.read(KIND, path, limit).map_err(|error| error.to_string())?;
     let display = path.display().to_string();
     let text = source::decode(&display, &bytes).map_err(|fault| fault.to_string())?;
     Ok(Rc::new(Library::parse(&display, text.into_owned(), report)))

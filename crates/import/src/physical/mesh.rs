@@ -146,6 +146,15 @@ impl<'d> Builder<'d> {
         own
     }
 
+    /// Warns about libraries that are not found though no object uses their materials.
+    pub(super) fn warn_of_unused_libraries(&mut self) {
+        let mut unused: Vec<(&MeshId, &Loaded)> = self.models.loaded.iter().collect();
+        unused.sort_by_key(|(mesh, _)| mesh.0);
+        for (_, Loaded { path, model }) in unused {
+            Libraries::warn_of_unused(&self.files, &mut self.reader.report, model, path);
+        }
+    }
+
     /// Assigns the materials of the model's libraries to the faces of a mesh. `None` if the model names neither.
     fn assign(&mut self, table: Table<'d>, mesh: MeshId, loaded: &Loaded) -> Option<Own> {
         let Loaded { path, model } = loaded;

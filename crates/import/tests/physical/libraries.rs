@@ -1,7 +1,7 @@
 //! What an MTL file makes of a material: in the sense of its format, of Blender, and of whoever writes roughness.
 
 use super::models::{OBJECT, VERTICES, library, scattering};
-use super::{HEAD, memory, opaque_png};
+use super::{CLAY, HEAD, memory, opaque_png};
 use glam::Vec3;
 use lightcuts_scene::physical::{PhysicalScene, Scattering};
 
@@ -261,6 +261,14 @@ fn libraries_and_materials_that_are_nowhere_leave_grey_faces() {
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     // A library alone, and neither.
     assert_eq!(model(&format!("mtllib none.mtl\n{body}f 1 2 3\n"), &[]).1.len(), 1);
+    // One that is not used either: the object has a material of its own.
+    let own = format!("{HEAD}{CLAY}{OBJECT}material = \"clay\"\n");
+    let text = format!("mtllib none.mtl\n{body}usemtl a\nf 1 2 3\n");
+    let files = [("m.obj", text.as_bytes())];
+    let warnings: Vec<String> = memory(&own, &files).unwrap().warnings.iter().map(ToString::to_string).collect();
+    let unused =
+        "m.obj:1:1: the material library `none.mtl` was not found; searched none.mtl; none of its materials is used";
+    assert!(warnings.iter().any(|warning| warning.contains(unused)), "{warnings:?}");
     let plain = format!("{body}f 1 2 3\n");
     let error = memory(&format!("{HEAD}{OBJECT}"), &[("m.obj", plain.as_bytes())]).expect_err("it has none");
     assert!(error.to_string().contains("`material` is missing, and the model has none of its own"), "{error}");
