@@ -13,9 +13,9 @@ pub(super) const AFTER_HELP: &str = "\
 Exit codes:
     0  the pictures are the same: no condition holds
     1  they differ: at least one condition holds
-    2  error, no verdict: bad usage, a picture that cannot be read, sizes or channels that do not
-       match, a map that cannot be written
-  130  interrupted (SIGINT)
+    2  error, no verdict: bad usage, a picture that cannot be read, sizes, places or channels that
+       do not match, a map that cannot be written
+  130  interrupted (SIGINT, SIGTERM)
 
 Conditions without --fail:
   non_finite>0, pdiff_pass<1, flip_ldr>0.05; where both pictures hold light (EXR, PFM, HDR, PNG of

@@ -1,6 +1,7 @@
 //! Which model of light an option belongs to: marked in the help, and looked up among those that were typed.
 
 use super::{AFTER_HELP, Cli, RenderArgs, SettingFlags};
+use clap::builder::StyledStr;
 use clap::{Arg, Command, CommandFactory, FromArgMatches};
 use lightcuts::rendering::{Model, Scope, keys_of};
 use toml::Table;
@@ -30,10 +31,15 @@ pub(crate) fn parse() -> Cli {
 /// The command line's declaration, with its model in the help of each option that belongs to one.
 pub(crate) fn command() -> Command {
     let after = format!("{LEGEND}\n\n{AFTER_HELP}");
-    let of_develop = "Transfer function of PNG values [default: srgb]";
+    // It has one default, whatever the model of the picture.
+    let of_develop = |arg: Arg| {
+        let short = |help: &StyledStr| help.to_string().replace("thesis linear, physical srgb", "srgb");
+        let [help, long] = [arg.get_help(), arg.get_long_help()].map(|help| help.map(short).unwrap_or_default());
+        arg.help(help).long_help(long)
+    };
     Cli::command()
         .mut_subcommand("render", |render| render.mut_args(marked).after_help(after))
-        .mut_subcommand("develop", |develop| develop.mut_arg("display.transfer", |arg| arg.help(of_develop)))
+        .mut_subcommand("develop", |develop| develop.mut_arg("display.transfer", of_develop))
 }
 
 /// The scope of an option, whose id is its key in job files: `None` for those that concern no model.

@@ -180,6 +180,7 @@ impl<'d> Builder<'d> {
         if !self.reader.report.has_errors() {
             self.warn_of_large_spheres();
             self.warn_of_unused_libraries();
+            self.warn_of_clipped_images();
         }
         let warnings = self.reader.report.finish()?;
         Ok(Imported { scene: self.scene, warnings, files: self.files.opened })

@@ -11,6 +11,12 @@ use lightcuts_scene::physical::{ImageId, PixelImage, Pixels};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+/// The greatest value of a texel, that of radiances.
+const MAX_LIGHT: f32 = 1e15;
+
+/// The greatest value of a texel on a surface: the greatest 16-bit float.
+const MAX_ON_SURFACES: f32 = 65504.0;
+
 /// What an image can be, to follow the word "expected".
 const FILES: &str = "a PNG, JPEG, EXR, HDR or PFM file beside the scene or in a search path";
 
@@ -194,11 +200,11 @@ fn pixels(mut texels: Vec<[u8; 4]>, has_alpha: bool, wanted: ImageUse) -> Pixels
 /// Light with nothing in it that cannot be: what is a little below zero, as filters leave it, is 0.
 fn checked(name: &str, mut decoded: Decoded) -> Result<Decoded, Refusal> {
     if let Texels::Light(texels) = &mut decoded.texels {
-        let bad = texels.iter().position(|texel| !texel.iter().all(|value| value.is_finite()));
+        let bad = texels.iter().position(|texel| !texel.iter().all(|value| value.abs() <= MAX_LIGHT));
         if let Some(i) = bad {
             let (row, column) = (i as u32 / decoded.width + 1, i as u32 % decoded.width + 1);
             let message = format!("the image `{name}` holds {:?} in row {row}, column {column}", texels[i]);
-            return Err(Refusal { message, expected: "finite numbers" });
+            return Err(Refusal { message, expected: "finite numbers of at most 1e15" });
         }
         texels.iter_mut().flatten().for_each(|value| *value = value.max(0.0));
     }
@@ -206,6 +212,26 @@ fn checked(name: &str, mut decoded: Decoded) -> Result<Decoded, Refusal> {
 }
 
 impl Builder<'_> {
+    /// Warns about emission whose images are brighter than surfaces can show them.
+    pub(super) fn warn_of_clipped_images(&mut self) {
+        let emission = self.scene.materials.iter().filter_map(|material| material.emission.as_ref()?.image);
+        let mut images: Vec<ImageId> = emission.collect();
+        images.sort_unstable_by_key(|id| id.0);
+        images.dedup();
+        for id in images {
+            let image = &self.scene.images[id.0 as usize];
+            let Pixels::Float(texels) = &image.pixels else { continue };
+            if texels.iter().flatten().any(|value| *value > MAX_ON_SURFACES) {
+                let message = format!(
+                    "the image `{}` holds values above {MAX_ON_SURFACES}, which surfaces show as that; scale the image \
+                     down and its `radiance` up",
+                    image.name
+                );
+                self.reader.report.warn(|| self.places.images[id.0 as usize].clone().with_message(&message));
+            }
+        }
+    }
+
     /// The image that the value of `key` names, if there is one.
     #[allow(clippy::option_option, reason = "the outer one is an error, as everywhere here")]
     pub(super) fn optional_image(

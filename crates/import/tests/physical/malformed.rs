@@ -19,7 +19,7 @@ const BODIES: &[(&str, &str)] = &[
     ("[environment]\nimage = \"a.txt\"", "8:9: the image `a.txt` is no PNG, JPEG, EXR, Radiance HDR or PFM image"),
     (
         "[environment]\nimage = \"nan.pfm\"",
-        "8:9: the image `nan.pfm` holds [0.0, NaN, 0.0] in row 1, column 1; expected finite numbers",
+        "8:9: the image `nan.pfm` holds [0.0, NaN, 0.0] in row 1, column 1; expected finite numbers of at most 1e15",
     ),
     ("[environment]\nrotate = 400", "8:10: `rotate`: degrees is 400; expected a number from -360 to 360"),
     ("[environment]\nradiance = -1", "8:12: `radiance` is [-1, -1, -1]; expected three numbers from 0"),

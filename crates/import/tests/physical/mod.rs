@@ -167,6 +167,21 @@ fn images_are_read_once_per_meaning() {
 }
 
 #[test]
+fn images_brighter_than_surfaces_can_show_are_told() {
+    let body = "[[material]]\nname = \"a\"\ntype = \"lambert\"\nemission = { image = \"lamp.pfm\" }\n\
+        [environment]\nimage = \"lamp.pfm\"\n";
+    let warned = |value: f32| {
+        let file = pfm([1.0, value, 0.0]);
+        let imported = memory(&format!("{HEAD}{body}"), &[("lamp.pfm", &file)]).expect("it is sound");
+        imported.warnings.iter().any(|warning| warning.to_string().contains("holds values above 65504"))
+    };
+    assert!(!warned(65504.0) && warned(65536.0) && warned(1e15));
+    let error =
+        memory(&format!("{HEAD}{body}"), &[("lamp.pfm", &pfm([1.0, 1e16, 0.0]))]).expect_err("it is too bright");
+    assert!(error.to_string().contains("expected finite numbers of at most 1e15"), "{error}");
+}
+
+#[test]
 fn every_light_is_read() {
     let made = scene(
         "[[light]]\ntype = \"point\"\nposition = [1, 2, 3]\nintensity = [4, 5, 6]\n\

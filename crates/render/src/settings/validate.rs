@@ -147,5 +147,7 @@ fn ensure(name: &'static str, value: impl std::fmt::Display, holds: bool, expect
 }
 
 fn number(name: &'static str, value: f32, least: f32, most: f32) -> Result<(), SettingsError> {
-    ensure(name, value, (least..=most).contains(&value), &format!("a number from {least} to {most:e}"))
+    let holds = (least..=most).contains(&value);
+    let most = if most < 1e6 { most.to_string() } else { format!("{most:e}") };
+    ensure(name, value, holds, &format!("a number from {least} to {most}"))
 }

@@ -23,6 +23,9 @@ const ROUNDINGS: f64 = 8.0 * UNIT as f64;
 /// share these only.
 const LEAST_SHARE: f64 = 1e-4;
 
+/// Least cosine between the planes of what lies in one place.
+const LEAST_SLOPE: f64 = 0.999;
+
 /// Which primitives lie in one place with which others.
 #[derive(Debug, Clone, Default)]
 pub struct Ties {
@@ -126,6 +129,8 @@ struct Form {
     primitive: u32,
     triangle: Triangle,
     outline: Outline,
+    /// Unit normal of its plane; zero of a sphere.
+    normal: DVec3,
     tolerance: f64,
     bounds: (Vec3, Vec3),
 }
@@ -173,7 +178,8 @@ impl Form {
         let coordinate = lower.abs().max(upper.abs()).max_element();
         let tolerance = (upper - lower).length() * RELATIVE_DISTANCE + coordinate * ROUNDINGS;
         let bounds = ((lower - tolerance).as_vec3(), (upper + tolerance).as_vec3());
-        Self { primitive, triangle, outline, tolerance, bounds }
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+        Self { primitive, triangle, outline, normal, tolerance, bounds }
     }
 
     fn sphere(sphere: &Sphere) -> Self {
@@ -184,6 +190,7 @@ impl Form {
             primitive: sphere.primitive,
             triangle: NO_TRIANGLE,
             outline: Outline::Sphere(*sphere),
+            normal: DVec3::ZERO,
             tolerance,
             bounds,
         }
@@ -191,6 +198,21 @@ impl Form {
 
     fn tied(&self) -> Tied {
         Tied { primitive: self.primitive, triangle: self.triangle }
+    }
+
+    /// Whether a triangle may lie in the place of this form: finds most of those that do not, before a form is made of
+    /// them.
+    fn may_hold(&self, triangle: &Triangle) -> bool {
+        let Some(&corner) = self.outline.corners().first() else { return false };
+        let (edge1, edge2) = (triangle.edge1.as_dvec3(), triangle.edge2.as_dvec3());
+        let cross = edge1.cross(edge2);
+        if cross.dot(self.normal).abs() < 0.999 * LEAST_SLOPE * cross.length() {
+            return false;
+        }
+        let height = self.normal.dot(triangle.corner.as_dvec3() - corner);
+        let heights = [height, height + self.normal.dot(edge1), height + self.normal.dot(edge2)];
+        let far = 2.0 * self.tolerance;
+        heights.iter().any(|height| *height <= far) && heights.iter().any(|height| *height >= -far)
     }
 
     /// Whether a part of this surface lies in another one.
@@ -225,7 +247,9 @@ fn visit(shapes: &Shapes, extent: f64, form: &Form, mut report: impl FnMut(Form)
                 ChildRef::Triangles(i) => {
                     let block = &shapes.triangles[i as usize];
                     let there = (0..LANES).map(|lane| block.triangle(lane)).filter(|t| t.primitive != NONE);
-                    there.for_each(|triangle| report(Form::triangle(triangle, extent)));
+                    there
+                        .filter(|triangle| form.may_hold(triangle))
+                        .for_each(|triangle| report(Form::triangle(triangle, extent)));
                 }
             }
         }
@@ -242,7 +266,7 @@ fn are_in_one_place(a: &[DVec3], b: &[DVec3], tolerance: f64) -> bool {
     let Some(normal) = (a[1] - a[0]).cross(a[2] - a[0]).try_normalize() else { return false };
     let Some(other) = (b[1] - b[0]).cross(b[2] - b[0]).try_normalize() else { return false };
     let slope = normal.dot(other);
-    if slope.abs() < 0.999 {
+    if slope.abs() < LEAST_SLOPE || divides(a, b, normal) || divides(b, a, normal * slope.signum()) {
         return false;
     }
     let (u, v) = normal.any_orthonormal_pair();
@@ -256,6 +280,14 @@ fn are_in_one_place(a: &[DVec3], b: &[DVec3], tolerance: f64) -> bool {
     // Where the line across the first plane meets the second one.
     let off = |p: &DVec2| (other.dot(b[0] - (a[0] + u * p.x + v * p.y)) / slope).abs();
     shared.iter().map(off).fold(0.0, f64::max) <= tolerance
+}
+
+/// Whether an edge of a convex outline, counterclockwise about a normal, has all of another one on its outer side.
+fn divides(outline: &[DVec3], other: &[DVec3], normal: DVec3) -> bool {
+    (0..outline.len()).any(|k| {
+        let outward = (outline[(k + 1) % outline.len()] - outline[k]).cross(normal);
+        other.iter().all(|p| outward.dot(*p - outline[k]) >= 0.0)
+    })
 }
 
 /// Twice the area, above zero counterclockwise.
