@@ -44,6 +44,7 @@ impl Plan {
         refuse_crease_angle(&imported.scene, &args.job.crease, &sources.files)?;
         let model = fitting_model(&imported.scene, &sources.files, args)?;
         let settings = job::resolve(&recommended(&imported.scene, model), &sources.files, &args.settings)?;
+        refuse_light_scale(&imported.scene, &settings)?;
         let scene = in_model(imported.scene, &settings);
         sources.inputs.extend(imported.files);
         outputs.check(&sources.inputs)?;
@@ -117,6 +118,18 @@ fn recommended(scene: &AnyScene, model: Model) -> Settings {
         (AnyScene::Thesis(scene), Model::Thesis) => Settings::for_scene(scene),
         _ => Settings::for_physical(),
     }
+}
+
+/// Fails if lights are scaled of a scene that has radiometric ones.
+fn refuse_light_scale(scene: &AnyScene, settings: &Settings) -> Result<(), Failure> {
+    let scale = settings.physical.light_scale;
+    if scale == 1.0 || matches!(scene, AnyScene::Thesis(_)) {
+        return Ok(());
+    }
+    Err(Failure::usage(
+        format!("physical.light-scale is {scale}, but only lights of scenes in the thesis' text format are scaled"),
+        "leave out --light-scale, or the job's key, and scale the lights in the scene",
+    ))
 }
 
 /// The scene in the model of light that the settings name, which can render it.

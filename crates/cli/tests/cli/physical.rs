@@ -236,6 +236,20 @@ fn a_crease_angle_is_part_of_the_job() {
 }
 
 #[test]
+fn lights_of_scenes_in_toml_are_not_scaled() {
+    let folder = folder();
+    folder.write("job.toml", "scene = 'ball.toml'\n[physical]\nlight-scale = 2.0\n");
+    for command in ["render ball.toml --light-scale 2", "render job.toml"] {
+        let said = stderr(&folder.run(command).code(2));
+        assert!(
+            said.contains("physical.light-scale is 2, but only lights of scenes in the thesis' text format"),
+            "{said}"
+        );
+    }
+    folder.run("render job.toml --light-scale 1 --size 8x8 --samples 1 -o a.png --progress none").success();
+}
+
+#[test]
 fn what_is_not_there_or_lacks_its_head_is_a_scene() {
     let folder = folder();
     let said = stderr(&folder.run("render nothere.toml").code(3));
