@@ -109,7 +109,7 @@ pub(crate) struct FilterFlags {
     /// Reconstruction filter [default: box]
     ///
     /// `box` is the plain mean. `triangle` and `gaussian` are softer, `mitchell` is sharp with little ringing. All but
-    /// the box need 4 or more --samples.
+    /// the box look right with 4 or more --samples only.
     #[arg(id = "filter.kind", long = "filter", value_name = "KIND", value_parser = ["box", "triangle", "gaussian", "mitchell"])]
     kind: Option<String>,
     /// Radius in pixels, 0.5 to 16 [default: box 0.5, triangle 1, gaussian and mitchell 2]
