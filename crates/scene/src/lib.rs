@@ -18,7 +18,7 @@ pub use light::{LightDesc, LightKind};
 pub use material::{ImageDesc, ImageId, MaterialDesc, MaterialId, TextureDesc, TextureMode};
 pub use object::{MeshDesc, MeshId, MeshTriangle, ObjectDesc, ShapeDesc, Transform};
 pub use smoothing::smooth_normals;
-pub use validate::{Issue, MAX_COORDINATE, MAX_EMITTERS, Subject};
+pub use validate::{Issue, MAX_COORDINATE, MAX_EMITTERS, MAX_LIGHT, Subject};
 
 use glam::Vec3;
 

@@ -13,8 +13,8 @@ pub const MAX_EMITTERS: u64 = 1 << 20;
 /// Largest magnitude of a colour, ratio or exponent.
 const MAX_FACTOR: f32 = 1e6;
 
-/// Greatest radiance, intensity or irradiance.
-const MAX_LIGHT: f32 = 1e15;
+/// Greatest radiance, intensity or irradiance, and greatest texel of an image of light.
+pub const MAX_LIGHT: f32 = 1e15;
 
 /// Least squared length of a direction; and of the sine between two directions that must not be parallel.
 const MIN_DIRECTION_SQ: f32 = 1e-12;

@@ -7,12 +7,10 @@ use crate::Fault;
 use crate::files::{AssetError, Files};
 pub(super) use crate::texture::ImageUse;
 use crate::texture::{self, Bounds, Decoded, Texels};
+use lightcuts_scene::MAX_LIGHT;
 use lightcuts_scene::physical::{ImageId, PixelImage, Pixels};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-
-/// The greatest value of a texel, that of radiances.
-const MAX_LIGHT: f32 = 1e15;
 
 /// The greatest value of a texel on a surface: the greatest 16-bit float.
 const MAX_ON_SURFACES: f32 = 65504.0;

@@ -129,7 +129,7 @@ struct Form {
     primitive: u32,
     triangle: Triangle,
     outline: Outline,
-    /// Unit normal of its plane; zero of a sphere.
+    /// Unit normal of its plane; zero of a sphere and of what has no area.
     normal: DVec3,
     tolerance: f64,
     bounds: (Vec3, Vec3),
@@ -223,7 +223,10 @@ impl Form {
                 off <= self.tolerance
             }
             (Outline::Sphere(_), _) | (_, Outline::Sphere(_)) => false,
-            (a, b) => meet(self.bounds, other.bounds) && are_in_one_place(a.corners(), b.corners(), self.tolerance),
+            (a, b) => {
+                let [a, b] = [(a.corners(), self.normal), (b.corners(), other.normal)];
+                meet(self.bounds, other.bounds) && are_in_one_place(a, b, self.tolerance)
+            }
         }
     }
 }
@@ -261,10 +264,9 @@ fn meet((lower, upper): (Vec3, Vec3), other: (Vec3, Vec3)) -> bool {
     lower.cmple(other.1).all() && upper.cmpge(other.0).all()
 }
 
-/// Whether two convex outlines share an area, and their planes are no farther apart there than `tolerance`.
-fn are_in_one_place(a: &[DVec3], b: &[DVec3], tolerance: f64) -> bool {
-    let Some(normal) = (a[1] - a[0]).cross(a[2] - a[0]).try_normalize() else { return false };
-    let Some(other) = (b[1] - b[0]).cross(b[2] - b[0]).try_normalize() else { return false };
+/// Whether two convex outlines, each with the unit normal of its plane, share an area, and their planes are no farther
+/// apart there than `tolerance`.
+fn are_in_one_place((a, normal): (&[DVec3], DVec3), (b, other): (&[DVec3], DVec3), tolerance: f64) -> bool {
     let slope = normal.dot(other);
     if slope.abs() < LEAST_SLOPE || divides(a, b, normal) || divides(b, a, normal * slope.signum()) {
         return false;

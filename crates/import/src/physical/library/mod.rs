@@ -14,6 +14,7 @@ use super::material::{IOR, THRESHOLD};
 use super::places::MaterialPlace;
 use crate::obj::{Library, LibraryMaterial, MapPlacement, Writer};
 use glam::Vec3;
+use lightcuts_scene::MAX_LIGHT;
 use lightcuts_scene::physical::{
     AlphaMask, EmissionDesc, ImageId, PixelImage, Pixels, Scattering, SurfaceDesc, SurfaceId,
 };
@@ -45,7 +46,7 @@ const MIN_CONTRAST: f32 = 2e-3;
 const SHARE: (f32, f32) = (0.0, 1.0);
 
 /// Radiances, and reflectances before they are scaled down to what a surface can reflect.
-const LIGHT: (f32, f32) = (0.0, 1e15);
+const LIGHT: (f32, f32) = (0.0, MAX_LIGHT);
 
 /// A material that was added to the scene.
 #[derive(Debug, Clone, Copy)]
