@@ -1,6 +1,7 @@
 //! Rays and hits.
 
 use crate::Rules;
+use crate::rounding::UNIT;
 use glam::Vec3;
 
 /// Least ray parameter of a hit in the original program, in parameter units.
@@ -12,6 +13,13 @@ pub const RELATIVE_EPSILON: f32 = 2e-5;
 
 /// Relative slack of slab tests, above twice their rounding error (Ize 2013, "Robust BVH Ray Traversal").
 pub const SLAB_SLACK: f32 = 1.0 + 4e-7;
+
+/// Relative slack of the ends of rays in slab tests: what is hit just before the end, or as near as something else, may
+/// lie in a box that the ray seems to enter later, by the rounding errors of both. Less than [`APPROACH`], so that rays
+/// that end next to a wall do not enter its box.
+///
+/// [`APPROACH`]: crate::rounding::APPROACH
+pub const END_SLACK: f32 = 1.0 + 12.0 * UNIT;
 
 /// No hit, or no primitive.
 pub const NONE: u32 = u32::MAX;

@@ -4,6 +4,7 @@ use glam::Vec3;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
+use obvhs::ploc::PlocSearchDistance;
 use std::time::Duration;
 
 /// Levels that the traversal's stack can hold: 7 entries per level of the 8-wide tree, which is never deeper than the
@@ -39,7 +40,13 @@ pub(crate) fn build(boxes: &[(Vec3, Vec3)]) -> Vec<BinaryNode> {
 
 fn built_by_obvhs(boxes: &[(Vec3, Vec3)]) -> Vec<BinaryNode> {
     let aabbs: Vec<Aabb> = boxes.iter().map(|&(a, b)| Aabb::new(a.to_array().into(), b.to_array().into())).collect();
-    let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::slow_build() };
+    let params = BvhBuildParams {
+        max_prims_per_leaf: 1,
+        // Measured: rays cost no more than after a wide search, in large rooms 6 % less, and trees are built sooner.
+        ploc_search_distance: PlocSearchDistance::Low,
+        search_depth_threshold: 1,
+        ..BvhBuildParams::slow_build()
+    };
     let built = build_bvh2(&aabbs, params, &mut Duration::default());
     // Renumbered from the root, so that parents come first whatever the builder's order was.
     let mut tree: Vec<BinaryNode> = Vec::with_capacity(built.nodes.len());

@@ -9,7 +9,7 @@ use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{
     Sphere, Square, Triangle, intersect_sphere, intersect_square, intersect_triangle, min_determinant,
 };
-use lightcuts_kernel::ray::{Hit, NONE, Ray, SLAB_SLACK, safe_reciprocal};
+use lightcuts_kernel::ray::{END_SLACK, Hit, NONE, Ray, SLAB_SLACK, safe_reciprocal};
 
 /// Children of a node and triangles of a block; also the width of the SIMD registers that test them.
 pub const LANES: usize = 8;
@@ -202,7 +202,7 @@ fn traverse(geometry: &Geometry<'_>, ray: &Ray, mut visit: impl FnMut(ChildRef, 
     while size > 0 {
         size -= 1;
         let (child, entry) = stack[size];
-        if entry > limit {
+        if entry > limit * END_SLACK {
             continue;
         }
         let ChildRef::Node(index) = ChildRef::unpack(child) else {
@@ -227,7 +227,7 @@ fn enter_box(node: &BvhNode, lane: usize, ray: &Ray, reciprocal: Vec3, limit: f3
     let exit = a.max(b).min_element();
     // Inverted boxes of empty children come out with lower > upper on every axis, and so with their ends swapped;
     // they are told by their order.
-    (lower.x <= upper.x && entry <= exit * SLAB_SLACK && entry <= limit).then_some(entry)
+    (lower.x <= upper.x && entry <= exit * SLAB_SLACK && entry <= limit * END_SLACK).then_some(entry)
 }
 
 #[cfg(test)]

@@ -11,11 +11,28 @@ use lightcuts_kernel::intersect::{SPHERE, TRIANGLE};
 /// from anywhere in the scene, so that a hit is never lost to its box.
 pub(crate) const PADDING: f32 = 2e-6;
 
+/// Which boxes are widened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Widened {
+    /// All, along every axis.
+    Everywhere,
+    /// All, by no more than their extent along an axis: what is flat stays flat, and rays that begin next to a wall do
+    /// not enter its box. For primitives that overlap at their edges.
+    ButFlat,
+}
+
 /// Builds the hierarchy over everything in the builder. `reach` is the camera's largest coordinate.
-pub(crate) fn build(builder: &Builder, reach: f32) -> (Vec<BvhNode>, Vec<TriangleBlock>) {
+pub(crate) fn build(builder: &Builder, reach: f32, widened: Widened) -> (Vec<BvhNode>, Vec<TriangleBlock>) {
     let extent = builder.boxes.iter().fold(reach, |m, (a, b)| m.max(a.abs().max_element()).max(b.abs().max_element()));
     let padding = Vec3::splat(extent * PADDING);
-    let boxes: Vec<(Vec3, Vec3)> = builder.boxes.iter().map(|&(a, b)| (a - padding, b + padding)).collect();
+    let widen = |&(lower, upper): &(Vec3, Vec3)| {
+        let padding = match widened {
+            Widened::Everywhere => padding,
+            Widened::ButFlat => padding.min(upper - lower),
+        };
+        (lower - padding, upper + padding)
+    };
+    let boxes: Vec<(Vec3, Vec3)> = builder.boxes.iter().map(widen).collect();
     let binary = binary_tree::build(&boxes);
     if binary.is_empty() {
         return (Vec::new(), Vec::new());

@@ -21,6 +21,7 @@ pub use physical::PhysicalWorld;
 pub use shapes::Shapes;
 pub use validate::Defect;
 
+use collapse::Widened;
 use glam::Vec3;
 use lightcuts_kernel::camera::{Camera, PIXEL_PITCH, THESIS_SIZE};
 use lightcuts_kernel::light::Light;
@@ -99,7 +100,7 @@ impl World {
         }
         let object_bounds = thesis::object_bounds(&builder, &materials);
         let world = Self {
-            shapes: builder.finish(scene.camera.center.abs().max_element()),
+            shapes: builder.finish(scene.camera.center.abs().max_element(), Widened::Everywhere),
             object_bounds,
             materials,
             textures,

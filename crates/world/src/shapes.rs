@@ -1,7 +1,7 @@
 //! Shapes made into primitives, in file order, and these into what rays can hit.
 
 use crate::bvh::{BvhNode, Geometry, TriangleBlock};
-use crate::collapse;
+use crate::collapse::{self, Widened};
 use crate::lights::Square as SquareFrame;
 use crate::mesh::{Place, place_triangle};
 use crate::pages::Pages;
@@ -119,8 +119,8 @@ impl Builder {
     }
 
     /// Builds the hierarchy. `reach` is the camera's largest coordinate.
-    pub(crate) fn finish(self, reach: f32) -> Shapes {
-        let (nodes, triangles) = collapse::build(&self, reach);
+    pub(crate) fn finish(self, reach: f32, widened: Widened) -> Shapes {
+        let (nodes, triangles) = collapse::build(&self, reach, widened);
         Shapes {
             nodes: nodes.into(),
             triangles: triangles.into(),

@@ -15,7 +15,7 @@ use super::stack::Stack;
 use super::tracer::Tracer;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square, min_determinant};
-use lightcuts_kernel::ray::{Hit, NONE, Ray};
+use lightcuts_kernel::ray::{END_SLACK, Hit, NONE, Ray};
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE};
 use std::arch::x86_64::{
     __m256, __m256i, _CMP_EQ_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi256_ps,
@@ -160,7 +160,7 @@ impl<'a> Bundle<'a> {
         let mut stack = Stack::<(u32, u32, f32), STACK_SIZE>::new();
         let mut next = (!geometry.nodes.is_empty()).then_some((0, asked, 0.0));
         while let Some((index, active, entry)) = next {
-            if entry > _mm256_cvtss_f32(limit) {
+            if entry > _mm256_cvtss_f32(limit) * END_SLACK {
                 // Everything that could be hit there lies behind.
             } else if active.count_ones() <= ALONE {
                 let mut hits = best.hits();

@@ -16,7 +16,7 @@ use bytemuck::cast_ref;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square};
-use lightcuts_kernel::ray::{ORIGINAL_EPSILON, Ray, SLAB_SLACK};
+use lightcuts_kernel::ray::{END_SLACK, ORIGINAL_EPSILON, Ray, SLAB_SLACK};
 use lightcuts_world::bvh::{Geometry, LANES, TriangleBlock};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NEQ_OQ, _mm256_add_ps, _mm256_and_ps,
@@ -112,7 +112,7 @@ pub(super) fn meet(
     limit: __m256,
     (lower, upper): (Wide3, Wide3),
 ) -> u32 {
-    let (mut entry, mut exit) = (t_min, limit);
+    let (mut entry, mut exit) = (t_min, _mm256_mul_ps(limit, _mm256_set1_ps(END_SLACK)));
     for axis in 0..3 {
         let at = |side: __m256| _mm256_mul_ps(_mm256_sub_ps(side, origin[axis]), reciprocal[axis]);
         let (a, b) = (at(lower[axis]), at(upper[axis]));
@@ -132,7 +132,7 @@ pub(super) fn meet_any(
     t_min: __m256,
     limit: __m256,
 ) -> (u32, __m256) {
-    let (mut entry, mut exit) = (t_min, limit);
+    let (mut entry, mut exit) = (t_min, _mm256_mul_ps(limit, _mm256_set1_ps(END_SLACK)));
     for axis in 0..3 {
         let by = |side: __m256| (_mm256_mul_ps(side, least[axis]), _mm256_mul_ps(side, greatest[axis]));
         let ((a, b), (c, d)) = (by(near[axis]), by(far[axis]));

@@ -9,7 +9,8 @@
 use super::stack::Stack;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{intersect_sphere, intersect_square, min_determinant};
-use lightcuts_kernel::ray::{Hit, Ray, SLAB_SLACK, safe_reciprocal};
+use lightcuts_kernel::ray::{END_SLACK, Hit, Ray, SLAB_SLACK, safe_reciprocal};
+use lightcuts_kernel::rounding::UNIT;
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, MAX_LEVELS, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NLT_UQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_ps,
@@ -113,12 +114,16 @@ pub(super) fn cross_triangles(
     (hit, [t, u, v])
 }
 
+/// By how much the product of origin and reciprocal may be wrong where boxes are entered or left, relative to it: it is
+/// rounded four times, and not from the sides' distances as in the plain version.
+const START_ERROR: f32 = 4.0 * UNIT;
+
 /// A ray in all lanes, to meet boxes.
 struct BoxRay {
     reciprocal: Wide3,
-    /// Origin times reciprocal.
+    /// Origin times reciprocal, made larger by as much as it may be wrong.
     start: Wide3,
-    /// Both for the sides where boxes are left, with [`SLAB_SLACK`].
+    /// Both for the sides where boxes are left, made smaller by as much, with [`SLAB_SLACK`].
     far_reciprocal: Wide3,
     far_start: Wide3,
     /// Per axis 1 where the ray runs towards smaller coordinates, and so enters boxes at their upper side; else 0.
@@ -131,20 +136,18 @@ impl BoxRay {
     fn new(ray: &Ray) -> Self {
         let reciprocal = safe_reciprocal(ray.direction);
         let start = ray.origin * reciprocal;
+        let error = start.abs() * START_ERROR;
         Self {
             reciprocal: splat3(reciprocal),
-            start: splat3(start),
+            start: splat3(start + error),
             far_reciprocal: splat3(reciprocal * SLAB_SLACK),
-            far_start: splat3(start * SLAB_SLACK),
+            far_start: splat3((start - error) * SLAB_SLACK),
             backwards: reciprocal.to_array().map(|c| usize::from(c < 0.0)),
             t_min: _mm256_set1_ps(ray.t_min),
         }
     }
 
     /// Children whose boxes the ray crosses before `limit`, and where it enters them.
-    ///
-    /// The rounding of `start` moves a side by at most 2^-24 of the origin's coordinate, a small part of the padding that boxes
-    /// have for it (`PADDING` in `lightcuts_world`); the rest is as in the plain version.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     fn enter(&self, node: &BvhNode, limit: __m256) -> (u32, __m256) {
@@ -157,6 +160,7 @@ impl BoxRay {
             _mm256_fmsub_ps(side, self.far_reciprocal[axis], self.far_start[axis])
         };
         let entry = _mm256_max_ps(_mm256_max_ps(near(0), near(1)), _mm256_max_ps(near(2), self.t_min));
+        let limit = _mm256_mul_ps(limit, _mm256_set1_ps(END_SLACK));
         let exit = _mm256_min_ps(_mm256_min_ps(far(0), far(1)), _mm256_min_ps(far(2), limit));
         (_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, exit)) as u32, entry)
     }
@@ -343,7 +347,7 @@ fn nearest(stack: &mut Stack<(u32, f32), STACK_SIZE>, node: &BvhNode, inner: u32
 fn nearer(stack: &mut Stack<(u32, f32), STACK_SIZE>, limit: f32) -> Option<u32> {
     loop {
         let (index, entry) = stack.pop()?;
-        if entry <= limit {
+        if entry <= limit * END_SLACK {
             return Some(index);
         }
     }

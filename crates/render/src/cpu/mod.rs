@@ -24,7 +24,7 @@ mod half_spaces;
 mod lanes;
 #[cfg(target_arch = "x86_64")]
 mod stack;
-mod tracer;
+pub(crate) mod tracer;
 
 pub use device::{CpuDevice, processor_name};
 #[cfg(test)]

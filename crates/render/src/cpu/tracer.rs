@@ -109,7 +109,7 @@ pub(crate) fn root_box(geometry: &Geometry<'_>, left_out: impl Fn(&BvhNode) -> u
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::cpu::{Blocks, Candidates, HalfSpaces, Receiver, evaluate, evaluate_together, select};
     use crate::light_tree::tests::scattered;
@@ -144,7 +144,7 @@ mod tests {
     }
 
     /// Every leaf in turn, without the hierarchy.
-    fn brute_force(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> Hit {
+    pub(crate) fn brute_force(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> Hit {
         let mut best = Hit::none(ray.t_max);
         let leaves = (0..geometry.triangles.len() as u32)
             .map(ChildRef::Triangles)

@@ -13,6 +13,7 @@ pub use environment::StoredEnvironment;
 pub use faces::Face;
 pub use ties::{Tied, Ties};
 
+use crate::collapse::Widened;
 use crate::lights::Square as SquareFrame;
 use crate::mesh::AffinePlacement;
 use crate::shapes::Builder;
@@ -91,7 +92,7 @@ impl PhysicalWorld {
         let mut world = Self {
             faces,
             has_masks: scatters.iter().any(|scatter| scatter.mask_image != NONE),
-            shapes: builder.finish(position.abs().max_element()),
+            shapes: builder.finish(position.abs().max_element(), Widened::ButFlat),
             textured: (0..scatters.len()).map(|index| scatters::is_textured(&scatters, index)).collect(),
             scatters,
             tables,
