@@ -9,13 +9,13 @@ use glam::Vec3;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct Lens {
-    /// Where it stands, in scene units.
+    /// Where rays begin, in scene units: the camera, or a place before it.
     pub position: Vec3,
     /// Half the picture's height: at distance 1, or in scene units for parallel rays.
     pub half_height: f32,
     /// Unit view direction.
     pub forward: Vec3,
-    /// Distance along `forward` from which on surfaces are seen, in scene units.
+    /// Distance from there along `forward` from which on surfaces are seen, in scene units.
     pub near: f32,
     /// Unit vector to the right of the picture.
     pub right: Vec3,
@@ -31,8 +31,8 @@ pub struct Lens {
     pub width: u32,
     /// Picture height in pixels.
     pub height: u32,
-    /// Unused.
-    pub padding: u32,
+    /// How far before the camera parallel rays begin, in scene units: where the scene does, if that is far.
+    pub ahead: f32,
 }
 
 /// The ray through a place of the picture, in pixels from its lower left corner; `random` is the place on the lens.

@@ -143,6 +143,9 @@ impl SamplePass<'_> {
         let mut sample = |(start, hit)| technique.sample(self, Start { hit, ..start }, &mut pending, counts);
         let mut sampled: Vec<Sampled> = starts.into_iter().zip(hits).map(&mut sample).collect();
         technique.gather(self, &mut pending, &mut sampled, counts);
+        for first in sampled.iter_mut().filter_map(|sampled| sampled.first.as_mut()) {
+            first.depth += self.lens.ahead;
+        }
         (sampled, shifts)
     }
 }

@@ -39,7 +39,7 @@ pub(crate) struct FirstHit {
     albedo: Vec3,
     normal: Vec3,
     position: Vec3,
-    depth: f32,
+    pub(crate) depth: f32,
     object: u32,
     material: u32,
 }

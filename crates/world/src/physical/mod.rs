@@ -142,11 +142,13 @@ impl PhysicalWorld {
             View::Perspective { degrees } => ((degrees.to_radians() / 2.0).tan(), 0),
             View::Orthographic { height } => (height / 2.0, 1),
         };
+        let view = camera.direction.as_dvec3().normalize_or_zero();
+        let ahead = if is_orthographic == 1 && camera.lens_radius == 0.0 { self.way_to_scene(view) } else { 0.0 };
         Lens {
-            position: (camera.position - self.origin).as_vec3(),
+            position: (camera.position + view * ahead - self.origin).as_vec3(),
             half_height,
             forward,
-            near: camera.near,
+            near: (f64::from(camera.near) - ahead).max(0.0) as f32,
             right,
             radius: camera.lens_radius,
             up: right.cross(forward),
@@ -154,8 +156,17 @@ impl PhysicalWorld {
             is_orthographic,
             width,
             height,
-            padding: 0,
+            ahead: ahead as f32,
         }
+    }
+
+    /// How far parallel rays can go on from the camera before they come near anything, in scene units; 0 unless that is
+    /// so far that hits would be rounded by more than they are within the scene.
+    fn way_to_scene(&self, view: DVec3) -> f64 {
+        let (lower, upper) = (self.bounds.0.as_dvec3(), self.bounds.1.as_dvec3());
+        let (middle, radius) = ((lower + upper) / 2.0, (upper - lower).length() / 2.0);
+        let way = (middle - (self.camera.position - self.origin)).dot(view) - 2.0 * radius;
+        if way > 16.0 * radius { way } else { 0.0 }
     }
 
     /// Checks that every number points at something, and the hierarchy.

@@ -2,10 +2,11 @@
 
 use super::scenes::{
     caustic_room, diffuse, instance, light, looking, mean, moved, object, point, quad, rectangle, render, room, scaled,
-    settings,
+    settings, tall_box,
 };
 use crate::cpu::tracer::tests::brute_force;
 use crate::cpu::{Simd, Tracer};
+use crate::physical::PhysicalRendering;
 use crate::settings::{Integrator, Strategy};
 use glam::{DAffine3, DQuat, DVec3, EulerRot, Vec3};
 use lightcuts_kernel::Rules;
@@ -44,6 +45,45 @@ fn moved_scenes_look_the_same() {
                 let lit = [&here, &there].map(|of| of.beauty.pixels().iter().filter(|p| is_lit(p)).count());
                 assert_eq!(lit[0], lit[1], "{name}, {integrator:?}, {shift}: pixels turn black");
             }
+        }
+    }
+}
+
+/// Parallel rays from as far away as 1e7 show the same, and how far that is.
+#[test]
+fn far_cameras_of_parallel_rays_see_the_same() {
+    let towards = Vec3::new(-0.3, -0.5, -0.8).normalize();
+    let seen = |distance: f64| {
+        let scene = PhysicalScene {
+            camera: PhysicalCamera {
+                position: DVec3::new(0.5, 0.3, 0.5) - towards.as_dvec3() * distance,
+                direction: towards,
+                view: View::Orthographic { height: 1.2 },
+                near: 0.5,
+                ..PhysicalCamera::default()
+            },
+            objects: vec![
+                rectangle(Vec3::ZERO, Vec3::Y, Vec3::Z, 20.0, 20.0, 0),
+                instance(0, DAffine3::from_rotation_y(0.3), 0),
+            ],
+            materials: vec![diffuse(Vec3::splat(0.5))],
+            meshes: vec![tall_box()],
+            environment: Some(sky(1.0)),
+            ..PhysicalScene::default()
+        };
+        render(&scene, &settings(Integrator::Path, 32, 32))
+    };
+    let near = seen(20.0);
+    for distance in [1e3, 1e5, 1e7] {
+        let far = seen(distance);
+        let ratio = mean(&far).y / mean(&near).y;
+        println!("{distance:e}: {ratio:.5}");
+        assert!((ratio - 1.0).abs() < 1e-3, "{distance:e}: {ratio}");
+        let darkest = |of: &PhysicalRendering| of.beauty.pixels().iter().map(|p| p[1]).fold(f32::INFINITY, f32::min);
+        assert!(darkest(&far) > 0.8 * darkest(&near), "{distance:e}: {}", darkest(&far));
+        for (far, near) in far.aovs().depth.pixels().iter().zip(near.aovs().depth.pixels()) {
+            let off = f64::from(*far) - f64::from(*near) - (distance - 20.0);
+            assert!(off.abs() < 0.02 + 1e-6 * distance, "{distance:e}: {far} where it was {near}");
         }
     }
 }
