@@ -65,7 +65,7 @@ fn summary(args: &DevelopArgs, factor: f32, is_automatic: bool, shown: &Image, o
     };
     line("picture", &format!("{}, {} x {}", args.picture.display(), shown.width(), shown.height()));
     line("exposure", &format!("{factor}{automatic}"));
-    line("above white", &format!("{white:.2} % of the pixels; {clipped:.2} % in a channel or more"));
+    line("above white", &format!("{white:.2} % of the pixels; {clipped:.2} % in at least one channel"));
     line("wrote", &output.display().to_string());
     text
 }

@@ -5,7 +5,7 @@ use crate::console;
 use crate::exit::{Exit, Failure};
 use crate::job::{self, Job, JobFile};
 use crate::outputs::Outputs;
-use lightcuts::rendering::Model;
+use lightcuts::rendering::{Integrator, Model};
 use lightcuts::scene::physical::from_thesis;
 use lightcuts::{AnyScene, ImportError, ImportOptions, Imported, Settings};
 use miette::Report;
@@ -45,6 +45,7 @@ impl Plan {
         let model = fitting_model(&imported.scene, &sources.files, args)?;
         let settings = job::resolve(&recommended(&imported.scene, model), &sources.files, &args.settings)?;
         refuse_light_scale(&imported.scene, &settings)?;
+        warn_of_unused(&settings, args);
         let scene = in_model(imported.scene, &settings);
         sources.inputs.extend(imported.files);
         outputs.check(&sources.inputs)?;
@@ -86,6 +87,16 @@ impl Sources {
             scene: scene_of_job,
             read_vpls,
         })
+    }
+}
+
+/// Says which options a path tracer without VPLs has no use for.
+fn warn_of_unused(settings: &Settings, args: &RenderArgs) {
+    let unused = args.settings.options_of_vpls();
+    let is_path = settings.run.model == Model::Physical && settings.physical.integrator == Integrator::Path;
+    if is_path && !unused.is_empty() {
+        let have = if unused.len() == 1 { "has" } else { "have" };
+        console::warn(&format!("{} {have} no effect with the integrator `path`, which has no VPLs", unused.join(", ")));
     }
 }
 

@@ -4,7 +4,7 @@ use crate::args::{PerformanceArgs, RenderArgs, SimdChoice, ThreadArgs};
 use crate::devices::GpuWork;
 use crate::exit::{Exit, Failure};
 use crate::fault::{fault, span_at};
-use crate::job::{JOB_ATTRIBUTE, Job, VERSION_ATTRIBUTE, require_regular};
+use crate::job::{COMPLETE_ATTRIBUTE, JOB_ATTRIBUTE, Job, VERSION_ATTRIBUTE, require_regular};
 use crate::outputs::{Kind, job_text};
 use crate::picture::Picture;
 use crate::plan::Plan;
@@ -16,9 +16,6 @@ use lightcuts::{
     AnyScene, Options, PhysicalWorld, SettingsError, Simd, Station, VplCsvError, World, image, vpls_from_csv,
 };
 use std::path::Path;
-
-/// Text in a picture that was not finished.
-const COMPLETE_ATTRIBUTE: &str = "lightcuts:complete";
 
 /// Runs the command.
 pub(crate) fn run(args: &RenderArgs, logs: bool) -> Result<Exit, Failure> {

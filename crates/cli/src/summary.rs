@@ -103,7 +103,7 @@ fn samples(stats: &Stats, model: Model) -> String {
     }
     parts.extend(stats.relative_error.map(|error| format!("; relative error {}", three_digits(error))));
     if stats.unsampled_pixels > 0 {
-        parts.push(format!("; {} pixels without one show their neighbours'", stats.unsampled_pixels));
+        parts.push(format!("; {} pixels without one show the nearest of a coarse preview", stats.unsampled_pixels));
     }
     parts.concat()
 }
@@ -187,7 +187,10 @@ mod tests {
         assert_eq!(told(Stats { samples_wanted: Some(100_000), ..timed.clone() }), "7.8 of 100000, time was up");
         assert_eq!(told(Stats { samples_wanted: None, ..timed.clone() }), "7.8, time was up");
         let short = Stats { samples_per_pixel: 0.01563, unsampled_pixels: 12, ..timed.clone() };
-        assert_eq!(told(short), "0.0156 of 64, time was up; 12 pixels without one show their neighbours'");
+        assert_eq!(
+            told(short),
+            "0.0156 of 64, time was up; 12 pixels without one show the nearest of a coarse preview"
+        );
         let low = Stats { end: End::Noise, samples_per_pixel: 1234.56, relative_error: Some(0.5), ..timed };
         assert_eq!(told(low), "1235 of 64, noise low enough; relative error 0.500");
         let passes = ["first_pass", "develop"].map(|name| PassTime { name: name.into(), wall_s: 0.0, cpu_s: 0.0 });

@@ -91,7 +91,9 @@ impl FromStr for Exposure {
         if text == AUTO {
             return Ok(Self::Auto);
         }
-        text.parse().map(Self::Factor).map_err(|_| "expected a factor such as 2 or 0.25, or `auto`".to_owned())
+        // `+1` would be a stop to a photographer.
+        let factor = if text.starts_with('+') { None } else { text.parse().ok() };
+        factor.map(Self::Factor).ok_or_else(|| "expected a factor such as 2 or 0.25, not stops, or `auto`".to_owned())
     }
 }
 
@@ -201,6 +203,7 @@ mod tests {
             assert_eq!(toml::from_str::<Job>(&toml::to_string(&job).unwrap()).unwrap(), job);
             assert_eq!(exposure.to_string().parse(), Ok(exposure));
         }
+        assert!("+1".parse::<Exposure>().is_err(), "a stop");
         let error = toml::from_str::<Job>("exposure = \"bright\"").unwrap_err().to_string();
         assert!(error.contains("expected a number or \"auto\""), "{error}");
         assert!("bright".parse::<Exposure>().is_err());

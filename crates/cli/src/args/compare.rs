@@ -13,8 +13,8 @@ pub(super) const AFTER_HELP: &str = "\
 Exit codes:
     0  the pictures are the same: no condition holds
     1  they differ: at least one condition holds
-    2  error, no verdict: bad usage, a picture that cannot be read, sizes, places or channels that
-       do not match, a map that cannot be written
+    2  error, no verdict: bad usage, a picture that cannot be read, sizes, window positions or
+       channels that do not match, a map that cannot be written
   130  interrupted (SIGINT, SIGTERM)
 
 Conditions without --fail:
@@ -81,7 +81,7 @@ pub(crate) struct InputArgs {
     /// Compare the colours even if only one of the pictures has an alpha channel. Alpha itself is never compared.
     #[arg(long)]
     pub(crate) ignore_alpha: bool,
-    /// Compare the pixels of EXR files whose data windows lie elsewhere in their display windows.
+    /// Compare the pixels of EXR files whose data windows lie at other places in their display windows.
     #[arg(long)]
     pub(crate) ignore_windows: bool,
 }
@@ -147,7 +147,8 @@ pub(crate) struct CompareOutputArgs {
     /// No table and no progress, only the exit code.
     #[arg(short, long)]
     pub(crate) quiet: bool,
-    /// Progress on stderr [default: for large pictures a bar on a terminal, else plain]
+    /// Progress on stderr [default: for pictures of a million pixels and more a bar on a
+    /// terminal, else plain; for smaller ones none]
     #[arg(long, value_name = "STYLE", value_enum)]
     pub(crate) progress: Option<ProgressStyle>,
     #[command(flatten)]

@@ -21,9 +21,9 @@ Values of `lightcuts render --device DEVICE`:
 `--station-device gather=gpu` runs one station of the render on another device.
 GPUs render the thesis' model; the physical model runs on the CPU.
 
-A graphics card is found if its driver supports Vulkan (Linux, Windows), Metal (macOS) or DX12 (Windows). If yours is not
-listed, install its vendor's driver and the Vulkan loader; on Debian and Ubuntu, the packages libvulkan1 and
-mesa-vulkan-drivers, which include a software driver.
+A graphics card is found if its driver supports Vulkan (Linux, Windows), Metal (macOS) or DX12
+(Windows). If yours is not listed, install its vendor's driver and the Vulkan loader; on Debian and
+Ubuntu, the packages libvulkan1 and mesa-vulkan-drivers, which include a software driver.
 
 A software driver runs on the processor. It is meant for tests, and is slower than the CPU renderer itself.
 

@@ -91,6 +91,24 @@ impl RenderArgs {
     }
 }
 
+/// Settings of the physical model that concern VPLs alone.
+const OF_VPLS: [&str; 7] = [
+    "gather.strategy",
+    "physical.vpls",
+    "physical.cut-error",
+    "physical.max-cut",
+    "physical.clamp",
+    "physical.compensation",
+    "physical.rejection",
+];
+
+impl SettingFlags {
+    /// The options given that concern VPLs alone in the physical model, as they were typed.
+    pub(crate) fn options_of_vpls(&self) -> Vec<String> {
+        keys_of(&self.table()).iter().filter(|id| OF_VPLS.contains(&id.as_str())).map(|id| typed(id)).collect()
+    }
+}
+
 /// The option with this id, or the id where there is none.
 fn typed(id: &str) -> String {
     let command = Cli::command();

@@ -54,7 +54,8 @@ pub(crate) struct ImageFlags {
     width: Option<u32>,
     /// Height in pixels [default: 512]
     ///
-    /// The height always spans the same part of the scene: half of it shows the same at half the resolution.
+    /// The height always spans the same part of the scene from bottom to top. Halve width and height for the same view
+    /// at half the resolution.
     #[arg(id = "image.height", long = "height", value_name = "PIXELS")]
     height: Option<u32>,
 }

@@ -28,9 +28,10 @@ pub(crate) struct RenderArgs {
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
-    /// Picture to write, .exr or .png; may be repeated [default: SCENE.png in the current folder]
+    /// Picture to write, .exr or .png; may be repeated [default: SCENE.png in the current folder; of a picture or job,
+    /// SCENE is the scene that it holds]
     ///
-    /// EXR: linear light in floats, every AOV, and the whole job, so that `lightcuts render FILE.exr` renders it again.
+    /// EXR: linear light in floats, every layer, and the whole job, so that `lightcuts render FILE.exr` renders it again.
     /// PNG: 8 bits per channel for display, also with the job.
     #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) pictures: Vec<PathBuf>,
@@ -108,8 +109,8 @@ pub(crate) enum ProgressStyle {
     Bar,
     /// A few lines of text
     Plain,
-    /// A JSON object per line: stage, done, total, elapsed_s, remaining_s, and of an experiment job, jobs, scene,
-    /// configuration, point, seed, run; or note
+    /// A JSON object per line, with stage, done, total, elapsed_s and remaining_s, or with note; `experiment` adds job,
+    /// jobs, scene, configuration, point, seed and run
     Json,
     /// Nothing
     None,

@@ -37,7 +37,7 @@ fn of_adapter(adapter: &Adapter) -> String {
         line(
             "",
             &format!(
-                "{} buffers per program, {} invocations per workgroup, subgroups of {subgroups}",
+                "{} buffers per shader, {} invocations per workgroup, subgroups of {subgroups}",
                 adapter.max_storage_buffers, adapter.max_invocations
             ),
         ),
@@ -71,7 +71,7 @@ mod tests {
             "GPU          Old Card\n",
             "graphics card; Vulkan, driver driver 1.2",
             "max buffer 2 GiB, max binding 128 MiB",
-            "10 buffers per program, 256 invocations per workgroup, subgroups of 8 to 32",
+            "10 buffers per shader, 256 invocations per workgroup, subgroups of 8 to 32",
             "has timestamps; cannot be used: it has 4 buffers",
             "software GPU llvmpipe\n",
             "has timestamps; can be used",

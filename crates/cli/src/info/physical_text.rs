@@ -83,7 +83,11 @@ fn smoothed(info: &PhysicalInfo) -> String {
         format!("{} without normals, up to {degrees} degrees between faces", count_meshes(*number))
     });
     let told: Vec<String> = told.collect();
-    if told.is_empty() { "none: every mesh has normals, or is flat".to_owned() } else { told.join("; ") }
+    if told.is_empty() {
+        "none: every mesh has normals, or stays flat by choice or by its crease angle".to_owned()
+    } else {
+        told.join("; ")
+    }
 }
 
 fn count_meshes(number: usize) -> String {

@@ -2,7 +2,7 @@
 
 use crate::console;
 use crate::exit::Failure;
-use crate::job::{JOB_ATTRIBUTE, VERSION_ATTRIBUTE, has_extension, require_picture};
+use crate::job::{COMPLETE_ATTRIBUTE, JOB_ATTRIBUTE, VERSION_ATTRIBUTE, has_extension, require_picture};
 use lightcuts::image::{self, Frame, Inventory, PictureFormat, PictureLayer, Window};
 use serde::Serialize;
 use std::fs::File;
@@ -26,6 +26,8 @@ pub(super) struct PictureInfo {
     pub(super) layers: Vec<Layer>,
     /// Version of the lightcuts that wrote it.
     pub(super) version: Option<String>,
+    /// Whether its render came to an end, as far as the picture tells.
+    pub(super) complete: bool,
     /// TOML.
     pub(super) job: Option<String>,
     /// How its numbers are taken, where that has to be known.
@@ -83,6 +85,7 @@ impl PictureInfo {
             window: windows(frame),
             layers: layers.into_iter().map(|PictureLayer { name, kind }| Layer { name, kind }).collect(),
             version: text(VERSION_ATTRIBUTE)?,
+            complete: text(COMPLETE_ATTRIBUTE)?.is_none_or(|told| told != "false"),
             job: text(JOB_ATTRIBUTE)?,
             warnings: remarks,
         })

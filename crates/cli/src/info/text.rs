@@ -38,12 +38,14 @@ pub(super) fn of_picture(info: &PictureInfo) -> String {
         };
         line("data window", &told(&windows.data)) + &line("display", &told(&windows.display))
     };
+    let incomplete = if info.complete { String::new() } else { line("complete", "no: the render was interrupted") };
     line("picture", &info.file)
         + &line("format", info.format)
         + &line("size", &format!("{} x {}", info.width, info.height))
         + &info.window.as_ref().map_or_else(String::new, window)
         + &line("layers", &layers.join(", "))
         + &line("version", info.version.as_deref().unwrap_or("unknown"))
+        + &incomplete
         + &job
 }
 

@@ -19,6 +19,8 @@ use toml::{Table, Value};
 pub(crate) const JOB_ATTRIBUTE: &str = "lightcuts:job";
 /// Name of the text in a picture that holds the version of the program that made it.
 pub(crate) const VERSION_ATTRIBUTE: &str = "lightcuts:version";
+/// Text in a picture that was not finished: `false`.
+pub(crate) const COMPLETE_ATTRIBUTE: &str = "lightcuts:complete";
 
 /// Longest job file in bytes; a whole job has about 2 KB.
 const MAX_BYTES: u64 = 1 << 20;

@@ -8,7 +8,8 @@ mod merge;
 mod path;
 
 pub(crate) use file::{
-    JOB_ATTRIBUTE, JobFile, VERSION_ATTRIBUTE, has_extension, is_job_carrier, require_picture, require_regular,
+    COMPLETE_ATTRIBUTE, JOB_ATTRIBUTE, JobFile, VERSION_ATTRIBUTE, has_extension, is_job_carrier, require_picture,
+    require_regular,
 };
 pub(crate) use merge::{model, require_fitting, resolve};
 

@@ -55,7 +55,7 @@ fn above_white_is_what_the_file_shows_white() {
     ] {
         write_exr(folder.at("a.exr"), &Layers::new(picture.clone())).unwrap();
         let said = stdout(&folder.run(&format!("develop a.exr {options} -o a.png")).success());
-        let expected = format!("above white  {white} % of the pixels; {clipped} % in a channel or more\n");
+        let expected = format!("above white  {white} % of the pixels; {clipped} % in at least one channel\n");
         assert!(said.contains(&expected), "{options}: {said}");
         let written = read_png(folder.at("a.png"), Transfer::Linear).unwrap();
         let share = |is_white: fn(&&[f32; 3]) -> bool| written.pixels().iter().filter(is_white).count() as f64 / 2.56;

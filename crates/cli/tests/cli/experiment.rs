@@ -125,7 +125,7 @@ fn progress_goes_over_the_whole_plan() {
     let finished: Vec<_> = lines.iter().filter(|line| line["stage"] == "finished").map(|line| &line["job"]).collect();
     assert_eq!(finished, [1, 2, 3, 4, 5, 6].iter().collect::<Vec<_>>());
     let help = stdout(&folder.run("experiment --help").success());
-    let (_, told) = help.split_once("A JSON object per line: ").unwrap();
+    let (_, told) = help.split_once("A JSON object per line, with ").unwrap();
     let told: Vec<&str> = told.split_once("- none").unwrap().0.split([',', ';', ' ', '\n']).collect();
     for key in lines.iter().flat_map(|line| line.as_object().unwrap().keys()) {
         assert!(told.contains(&key.as_str()), "{key} is missing in {told:?}");

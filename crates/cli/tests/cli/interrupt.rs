@@ -3,7 +3,7 @@
 #![cfg(unix)]
 
 use crate::physical::SCENE;
-use crate::support::Folder;
+use crate::support::{Folder, stdout};
 use lightcuts::image::{LayerData, read_exr};
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStderr, Command, Stdio};
@@ -40,6 +40,8 @@ fn an_interrupted_render_writes_what_there_is() {
         let layers = read_exr(folder.at("a.exr")).unwrap();
         assert_eq!((layers.width(), layers.height()), (512, 512));
         assert_eq!(layers.attribute("lightcuts:complete"), Some("false"));
+        let told = stdout(&folder.run("info a.exr").success()) + &stdout(&folder.run("info a.png").success());
+        assert_eq!(told.matches("complete     no: the render was interrupted").count(), 2, "{told}");
         assert!(folder.has("a.png") && folder.text("s.json").contains("\"complete\": false"));
     }
 }

@@ -118,7 +118,7 @@ fn without_a_number_of_samples_only_time_or_noise_ends_a_render() {
     let said = stdout(&folder.run("render both.toml --size 8x8 --progress none").success());
     assert!(said.contains(", samples 2"), "{said}");
     let said = stderr(&folder.run("render ball.toml --samples 0").code(2));
-    assert!(said.contains("0 for no limit where there is one of time or noise"), "{said}");
+    assert!(said.contains("or 0, no limit, where there is one of time or noise"), "{said}");
 }
 
 /// A picture that is too large for its time is whole: every pixel of the floor is there.
@@ -127,7 +127,7 @@ fn a_picture_without_time_is_whole() {
     let folder = folder();
     let options = "--size 1000x800 --time-limit 0.02s --progress none -o a.exr";
     let said = stdout(&folder.run(&format!("render ball.toml {options}")).success());
-    assert!(said.contains("time was up") && said.contains("show their neighbours'"), "{said}");
+    assert!(said.contains("time was up") && said.contains("show the nearest of a coarse preview"), "{said}");
     let layers = read_exr(folder.at("a.exr")).unwrap();
     assert_eq!(layers.attribute("lightcuts:complete"), None);
     let Some(LayerData::Id(ids)) = layers.get("object_id") else { panic!("an EXR has ids") };
@@ -175,6 +175,19 @@ fn scenes_of_the_thesis_can_be_rendered_with_it_and_not_the_other_way_round() {
     }
     let said = stdout(&folder.run("info ball.toml").success());
     assert!(said.contains("physical") && said.contains("1 emissive surface"), "{said}");
+}
+
+#[test]
+fn options_of_vpls_are_said_to_do_nothing_for_paths() {
+    let folder = folder();
+    let said = |options: &str| {
+        let ran = folder.run(&format!("render ball.toml {options} --dry-run"));
+        String::from_utf8(ran.success().get_output().stderr.clone()).unwrap()
+    };
+    let told = said("--integrator path --gather all --vpls 10 --samples 2");
+    assert!(told.contains("--gather, --vpls have no effect with the integrator `path`"), "{told}");
+    assert!(!said("--integrator auto --gather all --vpls 10").contains("no effect"));
+    assert!(!said("--integrator path --samples 2 --noise 0.1").contains("no effect"));
 }
 
 #[test]

@@ -153,7 +153,9 @@ impl Metric {
             Self::FlipHdr => {
                 "Mean over pixels of the greatest FLIP over a range of exposures, 0 to 1 (Andersson et al. 2021)."
             }
-            Self::Mse => "Mean over channels and pixels of the squared difference of light, in its unit squared.",
+            Self::Mse => {
+                "Mean squared difference of light over channels and pixels, in the square of the light's unit."
+            }
             Self::Rmse => "Root of the mean squared difference, in the unit of the light.",
             Self::Mae => "Mean absolute difference, in the unit of the light.",
             Self::RelMse => "Mean of difference^2 / (reference^2 + 0.01), a ratio (Rousselle et al. 2011).",

@@ -62,7 +62,7 @@ impl Settings {
         let most = if self.run.model == Model::Physical { 1 << 24 } else { 4096 };
         let samples = sampling.samples;
         let expected = if self.run.model == Model::Physical {
-            format!("1 to {most}, or 0 for no limit where there is one of time or noise")
+            format!("1 to {most}, or 0, no limit, where there is one of time or noise")
         } else {
             format!("1 to {most}")
         };

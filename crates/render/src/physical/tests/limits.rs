@@ -191,5 +191,5 @@ fn a_render_without_any_limit_is_refused() {
     let world = PhysicalWorld::new(&room(false)).unwrap();
     let error = render_physical(&world, &settings(Integrator::Path, 8, 0), Simd::Auto, &Impatient::new(0)).unwrap_err();
     assert_eq!(error.name, "sampling.samples");
-    assert!(error.expected.contains("or 0 for no limit where there is one of time or noise"), "{error}");
+    assert!(error.expected.contains("or 0, no limit, where there is one of time or noise"), "{error}");
 }
