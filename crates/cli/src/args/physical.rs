@@ -13,14 +13,14 @@ pub(crate) struct PhysicalFlags {
     /// `lightcuts`: samples direct light, and takes indirect light from VPLs (new ones in each pass) through cuts by
     /// error bound; best where light comes around corners. `path`: path tracing, the reference; often better in open
     /// scenes. `auto`: measures both in each tile of 16 x 16 pixels, spends more time on the more efficient one, and
-    /// weights them by the inverse of their variances; as it measures time, two such renders differ in their noise. All converge to
-    /// the same picture.
+    /// weights them by the inverse of their variances; as it measures time, two such renders differ in their noise. All
+    /// converge to the same picture.
     #[arg(id = "physical.integrator", long = "integrator", value_name = "NAME", value_parser = ["lightcuts", "path", "auto"])]
     integrator: Option<String>,
     /// Stop after this time, such as 10s, 500ms, 2m or 1.5h; 0 for no limit [default: 0]
     ///
-    /// Rendering stops then, at any picture size; pixels without a sample show the nearest one of a coarse preview. Reading the scene and
-    /// writing files come on top. The number of samples is not limited unless --samples is given.
+    /// Rendering stops then, at any picture size; pixels without a sample show the nearest one of a coarse preview.
+    /// Reading the scene and writing files come on top. The number of samples is not limited unless --samples is given.
     #[arg(id = "physical.time-limit", long = "time-limit", value_name = "TIME")]
     time_limit: Option<Seconds>,
     /// Stop when the estimated relative RMS error of the pixels falls below this, such as 0.02; 0 for never [default:
