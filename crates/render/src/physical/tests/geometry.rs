@@ -314,7 +314,7 @@ fn tiled_hall() -> PhysicalScene {
             mesh.triangles.extend(quad.triangles.iter().map(|triangle| MeshTriangle {
                 positions: triangle.positions.map(|k| k + first),
                 texture_coordinates: None,
-                ..triangle.clone()
+                ..*triangle
             }));
         }
     }
@@ -341,7 +341,7 @@ fn flat_boxes_lose_no_hit() {
         let is_flat = |(lower, upper): (Vec3, Vec3)| (lower.cmpeq(upper)).any();
         let boxes = geometry.nodes.iter().flat_map(|node| (0..LANES).map(|lane| node.child_box(lane)));
         assert_eq!(boxes.filter(|&of| is_flat(of)).count() > 50, name == "straight", "{name}");
-        let placement = scene.objects[6].shape.clone();
+        let placement = scene.objects[6].shape;
         let PhysicalShape::Mesh { placement, .. } = placement else { panic!("the hall's mesh is its seventh object") };
         let there = |p: Vec3| (placement.transform_point3(p.as_dvec3()) - world.origin).as_vec3();
         let ray = |k: u32| {
