@@ -28,4 +28,5 @@ pub(crate) const RENAMED_RECORDS: [(&str, &str); 1] = [
 ];
 
 /// Constants of Rust that WGSL does without, with the reason.
-pub(crate) const RUST_CONSTANTS: [(&str, &str); 0] = [];
+pub(crate) const RUST_CONSTANTS: [(&str, &str); 1] =
+    [("END_SLACK", "boxes of GPUs are padded along every axis instead")];
