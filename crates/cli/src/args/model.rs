@@ -65,6 +65,17 @@ fn mark(text: &str, model: Model) -> String {
     format!("{} ({}){gap}{after}", before.trim_end(), model.name())
 }
 
+/// Settings of the physical model that concern VPLs alone.
+const OF_VPLS: [&str; 7] = [
+    "gather.strategy",
+    "physical.vpls",
+    "physical.cut-error",
+    "physical.max-cut",
+    "physical.clamp",
+    "physical.compensation",
+    "physical.rejection",
+];
+
 impl SettingFlags {
     /// The tables of a job file with the keys that were given.
     pub(crate) fn table(&self) -> Table {
@@ -79,6 +90,11 @@ impl SettingFlags {
             key => typed(key),
         }
     }
+
+    /// The options given that concern VPLs alone in the physical model, as they were typed.
+    pub(crate) fn options_of_vpls(&self) -> Vec<String> {
+        keys_of(&self.table()).iter().filter(|id| OF_VPLS.contains(&id.as_str())).map(|id| typed(id)).collect()
+    }
 }
 
 impl RenderArgs {
@@ -88,24 +104,6 @@ impl RenderArgs {
         let given = keys_of(&self.settings.table()).into_iter().chain(others);
         let foreign = given.filter(|id| scope_of(id).is_some_and(|scope| !scope.includes(model)));
         foreign.map(|id| typed(&id)).collect()
-    }
-}
-
-/// Settings of the physical model that concern VPLs alone.
-const OF_VPLS: [&str; 7] = [
-    "gather.strategy",
-    "physical.vpls",
-    "physical.cut-error",
-    "physical.max-cut",
-    "physical.clamp",
-    "physical.compensation",
-    "physical.rejection",
-];
-
-impl SettingFlags {
-    /// The options given that concern VPLs alone in the physical model, as they were typed.
-    pub(crate) fn options_of_vpls(&self) -> Vec<String> {
-        keys_of(&self.table()).iter().filter(|id| OF_VPLS.contains(&id.as_str())).map(|id| typed(id)).collect()
     }
 }
 

@@ -24,7 +24,7 @@ mod half_spaces;
 mod lanes;
 #[cfg(target_arch = "x86_64")]
 mod stack;
-pub(crate) mod tracer;
+mod tracer;
 
 pub use device::{CpuDevice, processor_name};
 #[cfg(test)]
@@ -38,6 +38,8 @@ pub(crate) use lanes::Wide;
 pub(crate) use lanes::{Lanes, Plain};
 pub(crate) use tracer::RayLanes;
 pub use tracer::Tracer;
+#[cfg(test)]
+pub(crate) use tracer::tests::brute_force;
 
 /// Whether SIMD instructions are used. Never changes the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

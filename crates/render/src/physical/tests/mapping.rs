@@ -1,6 +1,6 @@
 //! Pictures and normal maps lie on surfaces as they are, however these are mirrored and placed.
 
-use super::scenes::{instance, looking, object, quad, rectangle, render, settings};
+use super::scenes::{direction, instance, looking, object, quad, rectangle, render, settings};
 use crate::physical::scene::{Cone, Scene};
 use crate::settings::Integrator;
 use glam::{DAffine3, DVec3, Vec3};
@@ -104,11 +104,6 @@ fn normal_maps_lean_along_v() {
         let lean = at.normal.dot(steepest);
         assert!((lean - 0.5_f32.sqrt()).abs() < 0.03, "{k}: {lean} along v, normal {}, face {}", at.normal, at.face);
     }
-}
-
-fn direction(k: u32) -> Vec3 {
-    let [x, y, z, _] = random4(k, 5, 0, 63);
-    (Vec3::new(x, y, z) - 0.5).normalize()
 }
 
 /// A rectangle shows its picture as it is, with the head up; its light does too.

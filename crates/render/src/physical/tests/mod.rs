@@ -2,8 +2,10 @@
 
 mod agreement;
 mod closed_forms;
-mod geometry;
+mod flat_boxes;
 mod limits;
 mod mapping;
+mod one_place;
 mod oracle;
+mod places;
 mod scenes;

@@ -4,7 +4,8 @@ use crate::cpu::Simd;
 use crate::monitor::Unwatched;
 use crate::physical::{PhysicalRendering, render_physical};
 use crate::settings::{Integrator, Settings};
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, DQuat, DVec3, Vec3};
+use lightcuts_kernel::rng::random4;
 use lightcuts_scene::physical::{
     EmissionDesc, EmitterDesc, EmitterKind, EnvironmentDesc, ImageId, PhysicalCamera, PhysicalObject, PhysicalScene,
     PhysicalShape, PixelImage, Pixels, Scattering, SurfaceDesc, SurfaceId, Tint, View,
@@ -187,7 +188,7 @@ pub(super) fn variants() -> Vec<(&'static str, PhysicalScene)> {
     many.objects.remove(5);
     many.materials[3] = light(Vec3::splat(60.0));
     many.objects.extend((0..60).map(|k| {
-        let [x, y, z, _] = lightcuts_kernel::rng::random4(k, 0, 0, 4);
+        let [x, y, z, _] = random4(k, 0, 0, 4);
         let center = Vec3::new(0.1 + 0.8 * x, 0.65 + 0.3 * y, 0.1 + 0.8 * z);
         object(PhysicalShape::Sphere { center: center.as_dvec3(), radius: 0.012 }, 3)
     }));
@@ -271,4 +272,39 @@ pub(super) fn quad(center: Vec3, right: Vec3, up: Vec3) -> MeshDesc {
 
 pub(super) fn instance(mesh: u32, placement: DAffine3, material: u32) -> PhysicalObject {
     object(PhysicalShape::Mesh { mesh: MeshId(mesh), placement, smooth: true, override_material: true }, material)
+}
+
+/// A direction, a different one for each number.
+pub(super) fn direction(k: u32) -> Vec3 {
+    let [x, y, z, _] = random4(k, 0, 0, 61);
+    (Vec3::new(x, y, z) - 0.5).normalize()
+}
+
+/// Even light from everywhere.
+pub(super) fn sky(radiance: f32) -> EnvironmentDesc {
+    EnvironmentDesc { radiance: Vec3::splat(radiance), image: None, degrees: 0.0, location: Location::default() }
+}
+
+/// A scene turned about a slant axis and moved: coordinates are no round numbers any more.
+pub(super) fn turned(scene: &PhysicalScene, k: u32) -> PhysicalScene {
+    let placement = DAffine3::from_rotation_translation(
+        DQuat::from_axis_angle(direction(k).as_dvec3(), f64::from(k)),
+        direction(k + 100).as_dvec3() * [0.0, 3.0, 1e3, 1e5][k as usize % 4],
+    );
+    let vector = |v: Vec3| placement.transform_vector3(v.as_dvec3()).as_vec3();
+    let mut turned = scene.clone();
+    let camera = &mut turned.camera;
+    camera.position = placement.transform_point3(camera.position);
+    (camera.direction, camera.up) = (vector(camera.direction), vector(camera.up));
+    for object in &mut turned.objects {
+        match &mut object.shape {
+            PhysicalShape::Sphere { center, .. } => *center = placement.transform_point3(*center),
+            PhysicalShape::Rectangle { center, normal, head, .. } => {
+                *center = placement.transform_point3(*center);
+                (*normal, *head) = (vector(*normal), vector(*head));
+            }
+            PhysicalShape::Mesh { placement: own, .. } => *own = placement * *own,
+        }
+    }
+    turned
 }
