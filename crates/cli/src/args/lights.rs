@@ -39,11 +39,11 @@ pub(crate) struct VplFlags {
 pub(crate) struct GatherFlags {
     /// Which VPLs light a point [default: lightcuts]
     ///
-    /// In the thesis' model: `lightcuts`, the VPLs whose relevance reaches --threshold, found through a light tree with bounds;
-    /// `lightcuts-exhaustive`, the same VPLs, and so the same picture, found by testing every VPL, to compare times
-    /// with; `all`, every VPL, the picture to compare with. In the physical model: `lightcuts`, clusters by error bound
-    /// (Walter et al. 2005); `stochastic`, a few VPLs sampled from the tree; `all`; and `auto`, which measures these
-    /// three and chooses among them in each tile.
+    /// In the thesis' model: `lightcuts`, the VPLs whose relevance reaches --threshold, found through a light tree with
+    /// bounds; `lightcuts-exhaustive`, the same VPLs, and so the same picture, found by testing every VPL, to compare
+    /// times with; `all`, every VPL, the picture to compare with. In the physical model: `lightcuts`, clusters by error
+    /// bound (Walter et al. 2005); `stochastic`, a few VPLs sampled from the tree; `all`; and `auto`, which measures
+    /// these three and chooses among them in each tile.
     #[arg(id = "gather.strategy", long = "gather", value_name = "STRATEGY", value_parser = ["all", "lightcuts", "lightcuts-exhaustive", "stochastic", "auto"])]
     strategy: Option<String>,
     /// Minimum relevance of a chosen VPL; not for `--gather all` [default: the scene's, else 0.000001]
