@@ -37,12 +37,13 @@ pub mod surface;
 pub mod texture;
 pub mod vector;
 pub mod virtual_light;
+pub mod watertight;
 pub mod wgsl;
 
 pub use rules::Rules;
 
 /// The modules whose WGSL twins are still to be written, by file stem.
-pub const TWINS_TO_COME: [&str; 14] = [
+pub const TWINS_TO_COME: [&str; 15] = [
     "bsdf",
     "cluster",
     "dielectric",
@@ -57,6 +58,7 @@ pub const TWINS_TO_COME: [&str; 14] = [
     "rounding",
     "scatter",
     "virtual_light",
+    "watertight",
 ];
 
 #[cfg(test)]

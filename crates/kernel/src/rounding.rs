@@ -19,6 +19,9 @@ const TEST_ERRORS: f32 = 8.0;
 /// The same on a sphere, whose roots are of squares.
 const SPHERE_ERRORS: f32 = 4.0;
 
+/// The same of a place between a triangle's corners, on the distances of these: however thin the triangle is.
+const CORNER_TEST_ERRORS: f32 = 16.0;
+
 /// Least distance from a surface, in roundings of the greatest coordinate.
 const LEAST_ERRORS: f32 = 2.0;
 
@@ -62,27 +65,28 @@ pub fn sphere_slack(radius: f32) -> f32 {
     UNIT * SPHERE_ERRORS * radius
 }
 
-/// The slack of a triangle for rays that begin next to it: errors of [`crate::intersect::intersect_triangle`] across
+/// The slack of a triangle for rays that begin next to it: errors of [`crate::watertight::intersect_watertight`] across
 /// its plane.
 pub fn triangle_slack(edge1: Vec3, edge2: Vec3) -> f32 {
     let lower = edge1.min(edge2).min(Vec3::ZERO);
     let reach = edge1.max(edge2).max(Vec3::ZERO) - lower;
     let (a, b) = (edge1.abs(), edge2.abs());
-    // The distance is b . (offset x a) over the length of a x b, and each offset at most `reach`.
+    // The distance is offset . (a x b) over the length of a x b, and each offset at most `reach`.
     let products =
         Vec3::new(reach.y * a.z + reach.z * a.y, reach.z * a.x + reach.x * a.z, reach.x * a.y + reach.y * a.x);
     let doubled_area = edge1.cross(edge2).length();
-    if doubled_area > 0.0 { UNIT * TEST_ERRORS * b.dot(products) / doubled_area } else { 0.0 }
+    let of_plane = if doubled_area > 0.0 { TEST_ERRORS * b.dot(products) / doubled_area } else { 0.0 };
+    UNIT * of_plane.min(CORNER_TEST_ERRORS * reach.length())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Rules;
-    use crate::intersect::{Triangle, intersect_sphere, intersect_square, intersect_triangle, min_determinant};
+    use crate::intersect::{intersect_sphere, intersect_square};
     use crate::ray::Ray;
     use crate::rng::random4;
-    use bytemuck::Zeroable;
+    use crate::watertight::{Shear, intersect_watertight};
 
     fn vector(k: u32, what: u32) -> Vec3 {
         let [x, y, z, _] = random4(k, what, 0, 91);
@@ -122,7 +126,7 @@ mod tests {
             let across = n.cross(vector(k, 2)).normalize();
             // From equilateral to needles.
             let edge1 = across * size;
-            let edge2 = (across * 0.5 + n.cross(across) * 10.0_f32.powf(-3.0 * narrow)) * size;
+            let edge2 = (across * 0.5 + n.cross(across) * 10.0_f32.powf(-5.0 * narrow)) * size;
             let corner = place;
             let (b, c) = (corner + edge1, corner + edge2);
             let (edge1, edge2) = (b - corner, c - corner);
@@ -130,7 +134,6 @@ mod tests {
             let Some(exact) = cross.try_normalize() else { continue };
             let flat = exact.as_vec3();
             let offset = exact.dot(corner.as_dvec3());
-            let triangle = Triangle { corner, edge1, edge2, ..Triangle::zeroed() };
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
             let off = corner + edge1 * u + edge2 * v + vector(k, 4) * size * 0.1;
             let point = onto_plane(off, flat, offset as f32);
@@ -142,7 +145,7 @@ mod tests {
             assert!(distance <= f64::from(error), "{k}: {distance:e} off a plane, bound {error:e}");
             let side = if k % 2 == 0 { flat } else { -flat };
             let start = ray(point + side * error, leaving(k, side));
-            let hit = intersect_triangle(&triangle, &start, min_determinant(Rules::Repaired));
+            let hit = intersect_watertight(&[corner, b, c], 0, &start, &Shear::new(start.direction));
             assert!(hit.is_none(), "{k}: {hit:?}");
         }
     }

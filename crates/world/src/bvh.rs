@@ -10,6 +10,7 @@ use lightcuts_kernel::intersect::{
     Sphere, Square, Triangle, intersect_sphere, intersect_square, intersect_triangle, min_determinant,
 };
 use lightcuts_kernel::ray::{END_SLACK, Hit, NONE, Ray, SLAB_SLACK, safe_reciprocal};
+use lightcuts_kernel::watertight::{Shear, intersect_watertight};
 
 /// Children of a node and triangles of a block; also the width of the SIMD registers that test them.
 pub const LANES: usize = 8;
@@ -20,7 +21,17 @@ pub const STACK_SIZE: usize = 512;
 /// Levels of the deepest tree that the builder makes.
 pub const MAX_LEVELS: usize = STACK_SIZE / (LANES - 1);
 
-/// Eight triangles, component by component: corner, two edges, primitive. Empty lanes have zero edges, which no ray hits.
+/// How blocks hold their triangles, and so how rays are tested against them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TriangleForm {
+    /// A corner and two edges, for [`intersect_triangle`]: the thesis' model.
+    #[default]
+    Edges,
+    /// Three corners, for [`intersect_watertight`]: the physical model.
+    Corners,
+}
+
+/// Eight triangles, component by component. Empty lanes are zero throughout, which no ray hits.
 ///
 /// Blocks and nodes begin where cache lines do: a ray waits for memory longer than it computes, and a block across one line
 /// more is one more to wait for.
@@ -28,28 +39,28 @@ pub const MAX_LEVELS: usize = STACK_SIZE / (LANES - 1);
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct TriangleBlock {
     /// First corners: x of all lanes, y of all lanes, z of all lanes.
-    pub corner: [[f32; LANES]; 3],
-    /// Second corner minus first.
-    pub edge1: [[f32; LANES]; 3],
-    /// Third corner minus first.
-    pub edge2: [[f32; LANES]; 3],
+    pub a: [[f32; LANES]; 3],
+    /// Second corners; as [`TriangleForm::Edges`] less the first ones.
+    pub b: [[f32; LANES]; 3],
+    /// Third corners; as [`TriangleForm::Edges`] less the first ones.
+    pub c: [[f32; LANES]; 3],
     /// Primitive of each lane, or [`NONE`].
     pub primitive: [u32; LANES],
 }
 
 impl TriangleBlock {
     /// A block without triangles.
-    pub const EMPTY: Self = Self {
-        corner: [[0.0; LANES]; 3],
-        edge1: [[0.0; LANES]; 3],
-        edge2: [[0.0; LANES]; 3],
-        primitive: [NONE; LANES],
-    };
+    pub const EMPTY: Self =
+        Self { a: [[0.0; LANES]; 3], b: [[0.0; LANES]; 3], c: [[0.0; LANES]; 3], primitive: [NONE; LANES] };
 
-    /// The triangle of one lane.
+    /// The vectors of one lane.
+    pub fn lane(&self, lane: usize) -> [Vec3; 3] {
+        [&self.a, &self.b, &self.c].map(|of| Vec3::new(of[0][lane], of[1][lane], of[2][lane]))
+    }
+
+    /// The triangle of one lane, of a block of edges.
     pub fn triangle(&self, lane: usize) -> Triangle {
-        let vector = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
-        let (corner, edge1, edge2) = (vector(&self.corner), vector(&self.edge1), vector(&self.edge2));
+        let [corner, edge1, edge2] = self.lane(lane);
         Triangle { corner, primitive: self.primitive[lane], edge1, padding0: 0, edge2, padding1: 0 }
     }
 }
@@ -148,6 +159,8 @@ pub struct Geometry<'a> {
     pub nodes: &'a [BvhNode],
     /// Triangle leaves.
     pub triangles: &'a [TriangleBlock],
+    /// What these hold.
+    pub form: TriangleForm,
     /// Sphere leaves.
     pub spheres: &'a [Sphere],
     /// Square leaves.
@@ -179,10 +192,13 @@ pub fn intersect_leaf(geometry: &Geometry<'_>, leaf: ChildRef, ray: &Ray, rules:
     match leaf {
         ChildRef::Node(_) => {}
         ChildRef::Triangles(i) => {
-            let limit = min_determinant(rules);
-            (0..LANES)
-                .filter_map(|lane| intersect_triangle(&geometry.triangles[i as usize].triangle(lane), ray, limit))
-                .for_each(report);
+            let block = &geometry.triangles[i as usize];
+            let (limit, shear) = (min_determinant(rules), Shear::new(ray.direction));
+            let hit = |lane: usize| match geometry.form {
+                TriangleForm::Edges => intersect_triangle(&block.triangle(lane), ray, limit),
+                TriangleForm::Corners => intersect_watertight(&block.lane(lane), block.primitive[lane], ray, &shear),
+            };
+            (0..LANES).filter_map(hit).for_each(report);
         }
         ChildRef::Sphere(i) => intersect_sphere(&geometry.spheres[i as usize], ray, rules).into_iter().for_each(report),
         ChildRef::Square(i) => intersect_square(&geometry.squares[i as usize], ray).into_iter().for_each(report),
@@ -243,7 +259,7 @@ mod tests {
 
     #[test]
     fn an_empty_geometry_is_never_hit() {
-        let geometry = Geometry { nodes: &[], triangles: &[], spheres: &[], squares: &[] };
+        let geometry = Geometry { nodes: &[], triangles: &[], form: TriangleForm::Edges, spheres: &[], squares: &[] };
         let ray = Ray { origin: Vec3::ZERO, direction: Vec3::X, t_min: 0.0, t_max: 1.0, inside: false };
         assert!(!closest_hit(&geometry, &ray, Rules::Repaired).is_some());
         assert!(!any_hit(&geometry, &ray, Rules::Repaired));

@@ -1,7 +1,7 @@
 //! The binary tree made 8 wide, with triangles gathered into blocks.
 
 use crate::binary_tree::{self, BinaryNode, Content};
-use crate::bvh::{BvhNode, ChildRef, TriangleBlock};
+use crate::bvh::{BvhNode, ChildRef, TriangleBlock, TriangleForm};
 use crate::shapes::Builder;
 use crate::widen::{Cut, children, cuts};
 use glam::Vec3;
@@ -11,24 +11,16 @@ use lightcuts_kernel::intersect::{SPHERE, TRIANGLE};
 /// from anywhere in the scene, so that a hit is never lost to its box.
 pub(crate) const PADDING: f32 = 2e-6;
 
-/// Which boxes are widened.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Widened {
-    /// All, along every axis.
-    Everywhere,
-    /// All, by no more than their extent along an axis: what is flat stays flat, and rays that begin next to a wall do
-    /// not enter its box. For primitives that overlap at their edges.
-    ButFlat,
-}
-
 /// Builds the hierarchy over everything in the builder. `reach` is the camera's largest coordinate.
-pub(crate) fn build(builder: &Builder, reach: f32, widened: Widened) -> (Vec<BvhNode>, Vec<TriangleBlock>) {
+pub(crate) fn build(builder: &Builder, reach: f32, form: TriangleForm) -> (Vec<BvhNode>, Vec<TriangleBlock>) {
     let extent = builder.boxes.iter().fold(reach, |m, (a, b)| m.max(a.abs().max_element()).max(b.abs().max_element()));
     let padding = Vec3::splat(extent * PADDING);
     let widen = |&(lower, upper): &(Vec3, Vec3)| {
-        let padding = match widened {
-            Widened::Everywhere => padding,
-            Widened::ButFlat => padding.min(upper - lower),
+        let padding = match form {
+            TriangleForm::Edges => padding,
+            // What is flat stays flat: rays that begin next to a wall do not enter its box. Hits across it are as exact
+            // as the box's test is.
+            TriangleForm::Corners => padding.min(upper - lower),
         };
         (lower - padding, upper + padding)
     };
@@ -39,7 +31,8 @@ pub(crate) fn build(builder: &Builder, reach: f32, widened: Widened) -> (Vec<Bvh
     }
     let sizes = triangle_counts(&binary, builder);
     let cuts = cuts(&binary, &sizes);
-    let mut collapse = Collapse { binary: &binary, cuts: &cuts, builder, nodes: Vec::new(), blocks: Vec::new() };
+    let (nodes, blocks) = (Vec::new(), Vec::new());
+    let mut collapse = Collapse { binary: &binary, cuts: &cuts, builder, form, nodes, blocks };
     collapse.run();
     (collapse.nodes, collapse.blocks)
 }
@@ -62,6 +55,7 @@ struct Collapse<'a> {
     binary: &'a [BinaryNode],
     cuts: &'a [Cut],
     builder: &'a Builder,
+    form: TriangleForm,
     nodes: Vec<BvhNode>,
     blocks: Vec<TriangleBlock>,
 }
@@ -118,10 +112,14 @@ impl Collapse<'_> {
                 Content::Children(left, right) => open.extend([right, left]),
                 Content::Primitive(p) => {
                     let [a, b, c] = self.builder.points[self.builder.primitives[p as usize].index as usize];
+                    let (b, c) = match self.form {
+                        TriangleForm::Edges => (b - a, c - a),
+                        TriangleForm::Corners => (b, c),
+                    };
                     for axis in 0..3 {
-                        block.corner[axis][lane] = a[axis];
-                        block.edge1[axis][lane] = (b - a)[axis];
-                        block.edge2[axis][lane] = (c - a)[axis];
+                        block.a[axis][lane] = a[axis];
+                        block.b[axis][lane] = b[axis];
+                        block.c[axis][lane] = c[axis];
                     }
                     block.primitive[lane] = p;
                     lane += 1;

@@ -21,7 +21,7 @@ pub use physical::PhysicalWorld;
 pub use shapes::Shapes;
 pub use validate::Defect;
 
-use collapse::Widened;
+use bvh::TriangleForm;
 use glam::Vec3;
 use lightcuts_kernel::camera::{Camera, PIXEL_PITCH, THESIS_SIZE};
 use lightcuts_kernel::light::Light;
@@ -100,7 +100,7 @@ impl World {
         }
         let object_bounds = thesis::object_bounds(&builder, &materials);
         let world = Self {
-            shapes: builder.finish(scene.camera.center.abs().max_element(), Widened::Everywhere),
+            shapes: builder.finish(scene.camera.center.abs().max_element(), TriangleForm::Edges),
             object_bounds,
             materials,
             textures,

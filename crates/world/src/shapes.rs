@@ -1,7 +1,7 @@
 //! Shapes made into primitives, in file order, and these into what rays can hit.
 
-use crate::bvh::{BvhNode, Geometry, TriangleBlock};
-use crate::collapse::{self, Widened};
+use crate::bvh::{BvhNode, Geometry, TriangleBlock, TriangleForm};
+use crate::collapse;
 use crate::lights::Square as SquareFrame;
 use crate::mesh::{Place, place_triangle};
 use crate::pages::Pages;
@@ -18,6 +18,8 @@ pub struct Shapes {
     pub nodes: Pages<BvhNode>,
     /// Triangles for intersection, in blocks, in hierarchy order.
     pub triangles: Pages<TriangleBlock>,
+    /// What the blocks hold.
+    pub form: TriangleForm,
     /// Spheres in file order.
     pub spheres: Vec<Sphere>,
     /// Squares in file order; a cube is six of them.
@@ -31,7 +33,13 @@ pub struct Shapes {
 impl Shapes {
     /// What rays can hit.
     pub fn geometry(&self) -> Geometry<'_> {
-        Geometry { nodes: &self.nodes, triangles: &self.triangles, spheres: &self.spheres, squares: &self.squares }
+        Geometry {
+            nodes: &self.nodes,
+            triangles: &self.triangles,
+            form: self.form,
+            spheres: &self.spheres,
+            squares: &self.squares,
+        }
     }
 
     /// What hits lie on.
@@ -119,11 +127,12 @@ impl Builder {
     }
 
     /// Builds the hierarchy. `reach` is the camera's largest coordinate.
-    pub(crate) fn finish(self, reach: f32, widened: Widened) -> Shapes {
-        let (nodes, triangles) = collapse::build(&self, reach, widened);
+    pub(crate) fn finish(self, reach: f32, form: TriangleForm) -> Shapes {
+        let (nodes, triangles) = collapse::build(&self, reach, form);
         Shapes {
             nodes: nodes.into(),
             triangles: triangles.into(),
+            form,
             spheres: self.spheres,
             squares: self.squares,
             primitives: self.primitives.into(),

@@ -88,8 +88,7 @@ impl Shapes {
             ChildRef::Triangles(i) => {
                 let block = self.triangles.get(i as usize).ok_or(Defect::DanglingNumber)?;
                 for lane in (0..LANES).filter(|&lane| block.primitive[lane] != NONE) {
-                    let at = |of: &[[f32; LANES]; 3]| Vec3::new(of[0][lane], of[1][lane], of[2][lane]);
-                    let corner = at(&block.corner);
+                    let [corner, ..] = block.lane(lane);
                     check(block.primitive[lane], corner, corner)?;
                 }
                 Ok(())

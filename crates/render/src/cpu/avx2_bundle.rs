@@ -8,15 +8,16 @@
 
 use super::avx2_packet::{Packet, meet, meet_any, sphere_from};
 use super::avx2_trace::{
-    Wide3, WideRay, any_hit, block, closest_hit, lanes, load, nearer_hit, other_hit, splat3, spread, store,
+    Wide3, WideRay, any_hit, block, closest_hit, lanes, load, nearer_hit, other_hit, splat_lane, splat3, spread, store,
 };
+use super::avx2_watertight::{WideShear, cross_watertight};
 use super::half_spaces::FEW;
 use super::stack::Stack;
 use super::tracer::Tracer;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square, min_determinant};
 use lightcuts_kernel::ray::{END_SLACK, Hit, NONE, Ray};
-use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE};
+use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
     __m256, __m256i, _CMP_EQ_OQ, _CMP_LT_OQ, _mm256_and_ps, _mm256_blendv_ps, _mm256_castps_si256, _mm256_castsi256_ps,
     _mm256_cmp_ps, _mm256_cmpgt_epi32, _mm256_cvtss_f32, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
@@ -31,8 +32,13 @@ pub(super) const ALONE: u32 = 2;
 pub(super) const ALL: u32 = 0xff;
 
 /// Rays whose directions have the same signs, with the ranges of their numbers in all lanes.
-pub(super) struct Bundle<'a> {
+/// `CORNERS` says that blocks hold these, else edges.
+pub(super) struct Bundle<'a, const CORNERS: bool> {
     packet: &'a Packet,
+    /// Of the rays that are asked for, and their origins and directions in the order of its axes.
+    shear: WideShear,
+    turned: [Wide3; 2],
+    asked: u32,
     reciprocal: Wide3,
     /// Per axis 1 where the rays run towards smaller coordinates, else 0.
     backwards: [usize; 3],
@@ -51,7 +57,7 @@ struct Nearest {
     v: __m256,
 }
 
-impl<'a> Bundle<'a> {
+impl<'a, const CORNERS: bool> Bundle<'a, CORNERS> {
     /// `None` if the rays in `asked`, a bit each, go different ways, or if there are none.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     pub(super) fn new(packet: &'a Packet, reciprocal: Wide3, asked: u32) -> Option<Self> {
@@ -66,6 +72,12 @@ impl<'a> Bundle<'a> {
             }
             backwards[axis] = usize::from(signs != 0);
         }
+        let (shear, turned) = if CORNERS {
+            let shear = WideShear::of_some(&packet.direction, asked)?;
+            (shear, [shear.turned(&packet.origin), shear.turned(&packet.direction)])
+        } else {
+            (WideShear::none(), [packet.origin, packet.direction])
+        };
         let zero = _mm256_setzero_ps();
         let (mut origin, mut slope) = ([[zero; 3]; 2], [[zero; 3]; 2]);
         for axis in 0..3 {
@@ -76,7 +88,20 @@ impl<'a> Bundle<'a> {
             (slope[0][axis], slope[1][axis]) = range(reciprocal[axis], asked);
         }
         let t_min = range(packet.t_min, asked).0;
-        Some(Self { packet, reciprocal, backwards, origin, slope, t_min })
+        Some(Self { packet, shear, turned, asked, reciprocal, backwards, origin, slope, t_min })
+    }
+
+    /// The triangle of a lane: rays that hit it, with t, u and v; with corners only of those that were asked for.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    fn intersect(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
+        if !CORNERS {
+            return self.packet.intersect(block, lane, least);
+        }
+        let turned = |of: &[[f32; LANES]; 3]| self.shear.turned(&splat_lane(of, lane));
+        let corners = [turned(&block.a), turned(&block.b), turned(&block.c)];
+        let (inside, [t, u, v]) = cross_watertight(self.turned[0], self.turned[1], &self.shear, corners);
+        (_mm256_and_ps(_mm256_and_ps(inside, spread(self.asked)), self.packet.between_ends(t)), [t, u, v])
     }
 
     /// Children that any of the rays may cross before `limit`, and the earliest that one may enter them.
@@ -111,7 +136,7 @@ impl<'a> Bundle<'a> {
         while let Some((index, entering)) = next {
             let active = entering & open;
             if active.count_ones() <= ALONE {
-                let is_hit = |&lane: &usize| any_hit::<false>(geometry, &self.packet.ray(lane), rules, index);
+                let is_hit = |&lane: &usize| any_hit::<false, CORNERS>(geometry, &self.packet.ray(lane), rules, index);
                 open &= !lanes(active).filter(is_hit).fold(0, |hits, lane| hits | 1 << lane);
             } else {
                 let node = &geometry.nodes[index as usize];
@@ -125,8 +150,9 @@ impl<'a> Bundle<'a> {
                     // Each ray with all triangles or each triangle with all rays, whichever is less often.
                     let count = block.primitive.iter().filter(|&&primitive| primitive != NONE).count();
                     if (active.count_ones() as usize) < count {
-                        let is_hit =
-                            |&lane: &usize| WideRay::new(&self.packet.ray(lane)).intersect(block, least).0 != 0;
+                        let is_hit = |&lane: &usize| {
+                            WideRay::<CORNERS>::new(&self.packet.ray(lane)).intersect(block, least).0 != 0
+                        };
                         open &= !lanes(active).filter(is_hit).fold(0, |hits, lane| hits | 1 << lane);
                         continue;
                     }
@@ -134,7 +160,7 @@ impl<'a> Bundle<'a> {
                         if active == 0 {
                             break;
                         }
-                        let hit = _mm256_movemask_ps(self.packet.intersect(block, lane, least).0) as u32 & active;
+                        let hit = _mm256_movemask_ps(self.intersect(block, lane, least).0) as u32 & active;
                         active &= !hit;
                         open &= !hit;
                     }
@@ -165,7 +191,7 @@ impl<'a> Bundle<'a> {
             } else if active.count_ones() <= ALONE {
                 let mut hits = best.hits();
                 for lane in lanes(active) {
-                    hits[lane] = nearer_hit(geometry, &rays[lane], rules, index, hits[lane]);
+                    hits[lane] = nearer_hit::<CORNERS>(geometry, &rays[lane], rules, index, hits[lane]);
                 }
                 best = Nearest::new(&hits);
                 limit = range(best.t, ALL).1;
@@ -201,7 +227,7 @@ impl<'a> Bundle<'a> {
             ChildRef::Triangles(index) => {
                 let block = &geometry.triangles[index as usize];
                 for lane in (0..LANES).take_while(|&lane| block.primitive[lane] != NONE) {
-                    let (hit, values) = self.packet.intersect(block, lane, min_determinant(rules));
+                    let (hit, values) = self.intersect(block, lane, min_determinant(rules));
                     best.take_nearer(hit, values, block.primitive[lane]);
                 }
             }
@@ -273,15 +299,15 @@ impl Nearest {
 
 /// Twin of `Tracer::closest8`.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-pub(super) fn closest_hits(tracer: &Tracer<'_>, rays: &[Ray; LANES]) -> [Hit; LANES] {
+pub(super) fn closest_hits<const CORNERS: bool>(tracer: &Tracer<'_>, rays: &[Ray; LANES]) -> [Hit; LANES] {
     let Tracer { geometry, rules, .. } = tracer;
     let packet = Packet::new(rays);
     let mut best = Nearest::none(&packet);
     let reciprocal = packet.reciprocal();
     if geometry.spheres.len() > FEW || geometry.squares.len() > FEW || rays.iter().any(|ray| ray.inside) {
-        return match Bundle::new(&packet, reciprocal, ALL) {
+        return match Bundle::<CORNERS>::new(&packet, reciprocal, ALL) {
             Some(bundle) => bundle.closest_hits::<true>((geometry, *rules), rays, ALL, best),
-            None => rays.map(|ray| closest_hit(geometry, &ray, *rules)),
+            None => rays.map(|ray| closest_hit::<CORNERS>(geometry, &ray, *rules)),
         };
     }
     geometry.squares.iter().for_each(|square| best.take_square(&packet, square));
@@ -291,12 +317,12 @@ pub(super) fn closest_hits(tracer: &Tracer<'_>, rays: &[Ray; LANES]) -> [Hit; LA
     if geometry.triangles.is_empty() || near == 0 {
         return best.hits();
     }
-    if let Some(bundle) = Bundle::new(&packet, reciprocal, near) {
+    if let Some(bundle) = Bundle::<CORNERS>::new(&packet, reciprocal, near) {
         return bundle.closest_hits::<false>((geometry, *rules), rays, near, best);
     }
     let mut hits = best.hits();
     for lane in lanes(near) {
-        hits[lane] = nearer_hit(geometry, &rays[lane], *rules, 0, hits[lane]);
+        hits[lane] = nearer_hit::<CORNERS>(geometry, &rays[lane], *rules, 0, hits[lane]);
     }
     hits
 }

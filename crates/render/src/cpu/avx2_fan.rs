@@ -137,7 +137,7 @@ impl<'a> Fan<'a> {
         let mut next = Some(0);
         while let Some(index) = next {
             if open.count_ones() <= ALONE {
-                let is_hit = |&bit: &usize| any_hit::<false>(geometry, &self.ray(bit), rules, index);
+                let is_hit = |&bit: &usize| any_hit::<false, false>(geometry, &self.ray(bit), rules, index);
                 open &= !lanes(open).filter(is_hit).fold(0, |hits, bit| hits | 1 << bit);
             } else {
                 let node = &geometry.nodes[index as usize];
@@ -213,8 +213,8 @@ impl<'a> Fan<'a> {
             let magnitude = |c: __m256| _mm256_andnot_ps(sign_bit, c);
             dot(half, [magnitude(x), magnitude(y), magnitude(z)])
         };
-        let (edge1, edge2) = (load3(&block.edge1), load3(&block.edge2));
-        let to_end = sub(self.end, load3(&block.corner));
+        let (edge1, edge2) = (load3(&block.b), load3(&block.c));
+        let to_end = sub(self.end, load3(&block.a));
         let (determinant, u, v) = (cross(edge2, edge1), cross(edge2, to_end), cross(to_end, edge1));
         let w = sub(sub(determinant, u), v);
         let margin = ROUNDING * self.length * extent;

@@ -17,7 +17,7 @@ use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square};
 use lightcuts_kernel::ray::{END_SLACK, ORIGINAL_EPSILON, Ray, SLAB_SLACK};
-use lightcuts_world::bvh::{Geometry, LANES, TriangleBlock};
+use lightcuts_world::bvh::{Geometry, LANES, TriangleBlock, TriangleForm};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NEQ_OQ, _mm256_add_ps, _mm256_and_ps,
     _mm256_andnot_ps, _mm256_blendv_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
@@ -54,10 +54,10 @@ pub(super) struct Packet {
 
 /// Which of the packet's rays in `asked` (a bit each) hit anything between their ends.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-pub(super) fn any_hits(tracer: &Tracer<'_>, packet: &Packet, asked: u32) -> u32 {
+pub(super) fn any_hits<const CORNERS: bool>(tracer: &Tracer<'_>, packet: &Packet, asked: u32) -> u32 {
     let Tracer { geometry, rules, .. } = tracer;
     if geometry.spheres.len() > FEW || geometry.squares.len() > FEW {
-        return packet.singly::<true>(geometry, *rules, asked);
+        return packet.singly::<true, CORNERS>(geometry, *rules, asked);
     }
     let mut open = asked;
     for square in geometry.squares {
@@ -66,13 +66,17 @@ pub(super) fn any_hits(tracer: &Tracer<'_>, packet: &Packet, asked: u32) -> u32 
     for sphere in geometry.spheres {
         open &= !packet.hits_sphere(sphere, sphere_from(sphere, packet.origin), *rules);
     }
-    asked & !packet.miss_mesh(tracer, open)
+    asked & !packet.miss_mesh::<CORNERS>(tracer, open)
 }
 
 /// Twin of `Tracer::occluded8` for rays that are not inside of anything and have no end behind their origin.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn occluded(tracer: &Tracer<'_>, rays: &[Ray; LANES], asked: u32) -> u32 {
-    any_hits(tracer, &Packet::new(rays), asked)
+    let packet = Packet::new(rays);
+    match tracer.geometry.form {
+        TriangleForm::Edges => any_hits::<false>(tracer, &packet, asked),
+        TriangleForm::Corners => any_hits::<true>(tracer, &packet, asked),
+    }
 }
 
 // Written out: with `map`, over arrays of registers, the compiler has been seen to misplace them on the stack.
@@ -89,7 +93,10 @@ pub(super) fn occluded_lanes(tracer: &Tracer<'_>, rays: &RayLanes, asked: u32) -
     let load3 = |of: &[[f32; LANES]; 3]| [load(&of[0]), load(&of[1]), load(&of[2])];
     let (origin, direction) = (load3(&rays.origin), load3(&rays.direction));
     let packet = Packet { origin, direction, t_min: _mm256_setzero_ps(), t_max: load(&rays.t_max) };
-    any_hits(tracer, &packet, asked)
+    match tracer.geometry.form {
+        TriangleForm::Edges => any_hits::<false>(tracer, &packet, asked),
+        TriangleForm::Corners => any_hits::<true>(tracer, &packet, asked),
+    }
 }
 
 /// Twin of `kernel::ray::safe_reciprocal`.
@@ -157,33 +164,37 @@ impl Packet {
     /// Rays of `open` that hit no triangle.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    pub(super) fn miss_mesh(&self, tracer: &Tracer<'_>, open: u32) -> u32 {
+    pub(super) fn miss_mesh<const CORNERS: bool>(&self, tracer: &Tracer<'_>, open: u32) -> u32 {
         let Tracer { geometry, rules, .. } = tracer;
         if open == 0 || geometry.triangles.is_empty() {
             return open;
         }
         let (reciprocal, (lower, upper)) = (self.reciprocal(), tracer.mesh);
         let near = meet(self.origin, reciprocal, self.t_min, self.t_max, (splat3(lower), splat3(upper))) & open;
-        open & !match Bundle::new(self, reciprocal, near) {
+        open & !match Bundle::<CORNERS>::new(self, reciprocal, near) {
             Some(bundle) => bundle.any_hits(geometry, *rules, near),
-            None => self.singly::<false>(geometry, *rules, near),
+            None => self.singly::<false, CORNERS>(geometry, *rules, near),
         }
     }
 
-    /// The triangle of a lane: rays that hit it, with t, u and v; the arithmetic of `intersect_triangle`.
+    /// The triangle of a lane, of a block of edges: rays that hit it, with t, u and v; the arithmetic of `intersect_triangle`.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     pub(super) fn intersect(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
-        let triangle =
-            [splat_lane(&block.corner, lane), splat_lane(&block.edge1, lane), splat_lane(&block.edge2, lane)];
+        let triangle = [splat_lane(&block.a, lane), splat_lane(&block.b, lane), splat_lane(&block.c, lane)];
         let (inside, [t, u, v]) = cross_triangles(self.origin, self.direction, triangle, least);
         (_mm256_and_ps(inside, self.between_ends(t)), [t, u, v])
     }
 
     /// Rays of `asked` that hit anything, one after the other; spheres and squares count where `OTHERS` says so.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-    pub(super) fn singly<const OTHERS: bool>(&self, geometry: &Geometry<'_>, rules: Rules, asked: u32) -> u32 {
-        let is_hit = |&lane: &usize| any_hit::<OTHERS>(geometry, &self.ray(lane), rules, 0);
+    pub(super) fn singly<const OTHERS: bool, const CORNERS: bool>(
+        &self,
+        geometry: &Geometry<'_>,
+        rules: Rules,
+        asked: u32,
+    ) -> u32 {
+        let is_hit = |&lane: &usize| any_hit::<OTHERS, CORNERS>(geometry, &self.ray(lane), rules, 0);
         lanes(asked).filter(is_hit).fold(0, |hits, lane| hits | 1 << lane)
     }
 

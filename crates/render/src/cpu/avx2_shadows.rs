@@ -197,7 +197,7 @@ pub(super) fn trace(tracer: &Tracer<'_>, sources: &[Source], shadows: &mut [Shad
     let packet = |shadow: &Shadow| source(shadow).packet(*rules, shadow.direction, shadow.length_sq);
     if geometry.spheres.len() > FEW || geometry.squares.len() > FEW {
         for shadow in shadows {
-            shadow.open &= !packet(shadow).singly::<true>(geometry, *rules, shadow.open);
+            shadow.open &= !packet(shadow).singly::<true, false>(geometry, *rules, shadow.open);
         }
         return;
     }
@@ -229,7 +229,7 @@ pub(super) fn trace(tracer: &Tracer<'_>, sources: &[Source], shadows: &mut [Shad
     }
     if !is_fan {
         for shadow in shadows.iter_mut().filter(|shadow| shadow.shared.may_meet_mesh()) {
-            shadow.open = packet(shadow).miss_mesh(tracer, shadow.open);
+            shadow.open = packet(shadow).miss_mesh::<false>(tracer, shadow.open);
         }
         return;
     }

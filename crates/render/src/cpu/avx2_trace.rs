@@ -6,6 +6,7 @@
 
 #![allow(unsafe_code)]
 
+use super::avx2_watertight::{WideShear, cross_watertight};
 use super::stack::Stack;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{intersect_sphere, intersect_square, min_determinant};
@@ -166,31 +167,46 @@ impl BoxRay {
     }
 }
 
-/// A ray in all lanes, to meet triangles.
-pub(super) struct WideRay {
+/// A ray in all lanes, to meet triangles: `CORNERS` says that blocks hold these, else edges.
+pub(super) struct WideRay<const CORNERS: bool> {
+    /// In the order of the shear's axes if there are corners, likewise the direction.
     origin: Wide3,
     direction: Wide3,
+    shear: WideShear,
     t_min: __m256,
     t_max: __m256,
 }
 
-impl WideRay {
+impl<const CORNERS: bool> WideRay<CORNERS> {
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     pub(super) fn new(ray: &Ray) -> Self {
+        let shear = if CORNERS { WideShear::of_one(ray.direction) } else { WideShear::none() };
+        let turned = |v: Wide3| if CORNERS { shear.turned(&v) } else { v };
         Self {
-            origin: splat3(ray.origin),
-            direction: splat3(ray.direction),
+            origin: turned(splat3(ray.origin)),
+            direction: turned(splat3(ray.direction)),
+            shear,
             t_min: _mm256_set1_ps(ray.t_min),
             t_max: _mm256_set1_ps(ray.t_max),
         }
     }
 
-    /// Lanes of a block that the ray hits, with t, u and v; the arithmetic of `intersect_triangle`.
+    /// Lanes of a block that the ray hits, with t, u and v; the arithmetic of `intersect_triangle` or, with corners, of
+    /// `intersect_watertight`.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
     pub(super) fn intersect(&self, block: &TriangleBlock, min_determinant: f32) -> (u32, [__m256; 3]) {
-        let triangles = [load3(&block.corner), load3(&block.edge1), load3(&block.edge2)];
-        let (inside, [t, u, v]) = cross_triangles(self.origin, self.direction, triangles, min_determinant);
+        let (inside, [t, u, v]) = if CORNERS {
+            let load3 = |of: &[[f32; LANES]; 3]| {
+                let [x, y, z] = self.shear.turned(&[&of[0], &of[1], &of[2]]);
+                [load(x), load(y), load(z)]
+            };
+            let triangles = [load3(&block.a), load3(&block.b), load3(&block.c)];
+            cross_watertight(self.origin, self.direction, &self.shear, triangles)
+        } else {
+            let triangles = [load3(&block.a), load3(&block.b), load3(&block.c)];
+            cross_triangles(self.origin, self.direction, triangles, min_determinant)
+        };
         let after = _mm256_cmp_ps::<_CMP_GT_OQ>(t, self.t_min);
         let before = _mm256_cmp_ps::<_CMP_LT_OQ>(t, self.t_max);
         let hit = _mm256_and_ps(inside, _mm256_and_ps(after, before));
@@ -225,11 +241,16 @@ fn prefetch(geometry: &Geometry<'_>, index: u32) {
 }
 
 /// Whether anything lies between the ray's ends, under a node, 0 for everything. `OTHERS` says whether spheres and squares
-/// count.
+/// count, `CORNERS` what blocks hold.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-pub(super) fn any_hit<const OTHERS: bool>(geometry: &Geometry<'_>, ray: &Ray, rules: Rules, under: u32) -> bool {
+pub(super) fn any_hit<const OTHERS: bool, const CORNERS: bool>(
+    geometry: &Geometry<'_>,
+    ray: &Ray,
+    rules: Rules,
+    under: u32,
+) -> bool {
     let Some(mut node) = geometry.nodes.get(under as usize) else { return false };
-    let (boxes, wide) = (BoxRay::new(ray), WideRay::new(ray));
+    let (boxes, wide) = (BoxRay::new(ray), WideRay::<CORNERS>::new(ray));
     let least = min_determinant(rules);
     // One entry per level: a node and those of its inner children that are still to be visited.
     let mut stack = Stack::<(u32, u32), MAX_LEVELS>::new();
@@ -284,16 +305,22 @@ pub(super) fn other_hit(geometry: &Geometry<'_>, child: u32, ray: &Ray, rules: R
 
 /// The nearest hit between the ray's ends; of equal hits the first in file order.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
-pub(super) fn closest_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> Hit {
-    nearer_hit(geometry, ray, rules, 0, Hit::none(ray.t_max))
+pub(super) fn closest_hit<const CORNERS: bool>(geometry: &Geometry<'_>, ray: &Ray, rules: Rules) -> Hit {
+    nearer_hit::<CORNERS>(geometry, ray, rules, 0, Hit::none(ray.t_max))
 }
 
 /// The nearest of the hits under a node and of the best one so far.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 #[inline]
-pub(super) fn nearer_hit(geometry: &Geometry<'_>, ray: &Ray, rules: Rules, under: u32, mut best: Hit) -> Hit {
+pub(super) fn nearer_hit<const CORNERS: bool>(
+    geometry: &Geometry<'_>,
+    ray: &Ray,
+    rules: Rules,
+    under: u32,
+    mut best: Hit,
+) -> Hit {
     let Some(mut node) = geometry.nodes.get(under as usize) else { return best };
-    let (boxes, wide) = (BoxRay::new(ray), WideRay::new(ray));
+    let (boxes, wide) = (BoxRay::new(ray), WideRay::<CORNERS>::new(ray));
     let least = min_determinant(rules);
     let mut stack = Stack::<(u32, f32), STACK_SIZE>::new();
     loop {

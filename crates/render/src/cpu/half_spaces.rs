@@ -258,7 +258,7 @@ mod tests {
     use lightcuts_kernel::light::Vpl;
     use lightcuts_kernel::ray::{shadow_ray, spawn_epsilon};
     use lightcuts_kernel::rng::random4;
-    use lightcuts_world::bvh::{BvhNode, ChildRef};
+    use lightcuts_world::bvh::{BvhNode, ChildRef, TriangleForm};
 
     /// A point on a square or close to it, on either side.
     fn near(square: &Square, k: u32) -> Vec3 {
@@ -334,7 +334,8 @@ mod tests {
         };
         let mut root = BvhNode::EMPTY;
         root.set_child(0, (Vec3::splat(-4.0), Vec3::splat(4.0)), ChildRef::Square(0));
-        let geometry = Geometry { nodes: &[root], triangles: &[], spheres: &[], squares: &[square] };
+        let geometry =
+            Geometry { nodes: &[root], triangles: &[], form: TriangleForm::Edges, spheres: &[], squares: &[square] };
         let tracer = Tracer::new(geometry, Rules::Original, Simd::Off);
         let half_spaces = |vpls: &[Vpl]| HalfSpaces::new(&tracer, &LightTree::build(vpls, TreeLayout::Wide));
         let sides = |heights: &[f32]| {

@@ -17,6 +17,8 @@ mod avx2_shadows;
 mod avx2_together;
 #[cfg(target_arch = "x86_64")]
 mod avx2_trace;
+#[cfg(target_arch = "x86_64")]
+mod avx2_watertight;
 mod device;
 mod enclosure;
 mod gather;

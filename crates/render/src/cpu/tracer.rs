@@ -4,7 +4,7 @@ use super::Simd;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::ray::{Hit, Ray};
-use lightcuts_world::bvh::{BvhNode, Geometry, LANES, any_hit, closest_hit};
+use lightcuts_world::bvh::{BvhNode, Geometry, LANES, TriangleForm, any_hit, closest_hit};
 
 /// Traces rays through a geometry by the best means that the machine has. Hits are those of the kernel's plain
 /// functions, bit for bit, whatever the means.
@@ -45,7 +45,12 @@ impl<'a> Tracer<'a> {
         #[cfg(target_arch = "x86_64")]
         if self.avx2 {
             // SAFETY: `avx2` is set only where the machine has the features.
-            return unsafe { super::avx2_trace::closest_hit(&self.geometry, ray, self.rules) };
+            return unsafe {
+                match self.geometry.form {
+                    TriangleForm::Edges => super::avx2_trace::closest_hit::<false>(&self.geometry, ray, self.rules),
+                    TriangleForm::Corners => super::avx2_trace::closest_hit::<true>(&self.geometry, ray, self.rules),
+                }
+            };
         }
         closest_hit(&self.geometry, ray, self.rules)
     }
@@ -56,7 +61,16 @@ impl<'a> Tracer<'a> {
         #[cfg(target_arch = "x86_64")]
         if self.avx2 {
             // SAFETY: `avx2` is set only where the machine has the features.
-            return unsafe { super::avx2_trace::any_hit::<true>(&self.geometry, ray, self.rules, 0) };
+            return unsafe {
+                match self.geometry.form {
+                    TriangleForm::Edges => {
+                        super::avx2_trace::any_hit::<true, false>(&self.geometry, ray, self.rules, 0)
+                    }
+                    TriangleForm::Corners => {
+                        super::avx2_trace::any_hit::<true, true>(&self.geometry, ray, self.rules, 0)
+                    }
+                }
+            };
         }
         any_hit(&self.geometry, ray, self.rules)
     }
@@ -68,7 +82,12 @@ impl<'a> Tracer<'a> {
         #[cfg(target_arch = "x86_64")]
         if self.avx2 {
             // SAFETY: `avx2` is set only where the machine has the features.
-            return unsafe { super::avx2_bundle::closest_hits(self, rays) };
+            return unsafe {
+                match self.geometry.form {
+                    TriangleForm::Edges => super::avx2_bundle::closest_hits::<false>(self, rays),
+                    TriangleForm::Corners => super::avx2_bundle::closest_hits::<true>(self, rays),
+                }
+            };
         }
         rays.map(|ray| self.closest(&ray))
     }

@@ -5,11 +5,10 @@ use super::scene::Scene;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::emitter::Emitter;
-use lightcuts_kernel::intersect::{
-    SPHERE, SQUARE, intersect_sphere, intersect_square, intersect_triangle, min_determinant,
-};
+use lightcuts_kernel::intersect::{SPHERE, SQUARE, intersect_sphere, intersect_square};
 use lightcuts_kernel::ray::{Hit, NONE, Ray};
 use lightcuts_kernel::surface::surface_at;
+use lightcuts_kernel::watertight::{Shear, intersect_watertight};
 use lightcuts_world::physical::Tied;
 
 /// How far apart along a ray, relative to the way, hits in one place may be: more than grazing rays draw rounding
@@ -64,7 +63,7 @@ impl Scene<'_> {
         let met = match primitive.kind {
             SPHERE => intersect_sphere(&shapes.spheres[primitive.index as usize], &whole, Rules::Repaired),
             SQUARE => intersect_square(&shapes.squares[primitive.index as usize], &whole),
-            _ => intersect_triangle(&tied.triangle, &whole, min_determinant(Rules::Repaired)),
+            _ => intersect_watertight(&tied.corners, tied.primitive, &whole, &Shear::new(whole.direction)),
         }?;
         (!self.world.has_masks || self.is_there(ray, &met)).then_some(met)
     }

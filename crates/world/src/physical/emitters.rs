@@ -1,5 +1,6 @@
 //! Lights made flat: those of the scene, and every emissive primitive.
 
+use super::overlap::Outlines;
 use crate::shapes::Builder;
 use bytemuck::Zeroable;
 use glam::{DVec3, Vec3};
@@ -19,11 +20,16 @@ pub(super) struct Lights {
     pub(super) of_primitives: Vec<u32>,
 }
 
-pub(super) fn collect(scene: &PhysicalScene, origin: DVec3, builder: &Builder, scatters: &[Scatter]) -> Lights {
+pub(super) fn collect(
+    scene: &PhysicalScene,
+    origin: DVec3,
+    (builder, outlines): (&Builder, &Outlines),
+    scatters: &[Scatter],
+) -> Lights {
     let mut emitters: Vec<Emitter> = Vec::new();
     let mut of_primitives = vec![NONE; builder.primitives.len()];
     for (number, of_primitive) in of_primitives.iter_mut().enumerate() {
-        if let Some(emitter) = emissive(builder, number, scatters) {
+        if let Some(emitter) = emissive(builder, outlines, number, scatters) {
             *of_primitive = emitters.len() as u32;
             emitters.push(emitter);
         }
@@ -37,7 +43,7 @@ pub(super) fn collect(scene: &PhysicalScene, origin: DVec3, builder: &Builder, s
 }
 
 /// The light of a primitive that shines and has an area.
-fn emissive(builder: &Builder, number: usize, scatters: &[Scatter]) -> Option<Emitter> {
+fn emissive(builder: &Builder, outlines: &Outlines, number: usize, scatters: &[Scatter]) -> Option<Emitter> {
     let primitive = &builder.primitives[number];
     let scatter = &scatters[primitive.material as usize];
     if scatter.radiance == Vec3::ZERO {
@@ -53,7 +59,7 @@ fn emissive(builder: &Builder, number: usize, scatters: &[Scatter]) -> Option<Em
     };
     let emitter = match primitive.kind {
         TRIANGLE => {
-            let [a, b, c] = builder.points[index];
+            let [a, b, c] = outlines.points[index];
             let cross = (b - a).cross(c - a);
             // On the side of the corner normals, as hits have it.
             let mean = builder.corners[index].normals.iter().sum::<Vec3>();
@@ -82,7 +88,7 @@ fn emissive(builder: &Builder, number: usize, scatters: &[Scatter]) -> Option<Em
             }
         }
         _ => {
-            let square = &builder.squares[index];
+            let square = &outlines.squares[index];
             let (edge1, edge2) = (square.across * (2.0 * square.half_width), square.along * (2.0 * square.half_height));
             Emitter {
                 kind: RECTANGLE_LIGHT,

@@ -6,6 +6,7 @@ mod environment;
 mod faces;
 mod images;
 mod middle;
+mod overlap;
 mod scatters;
 mod ties;
 
@@ -13,7 +14,7 @@ pub use environment::StoredEnvironment;
 pub use faces::Face;
 pub use ties::{Tied, Ties};
 
-use crate::collapse::Widened;
+use crate::bvh::TriangleForm;
 use crate::lights::Square as SquareFrame;
 use crate::mesh::AffinePlacement;
 use crate::shapes::Builder;
@@ -82,17 +83,18 @@ impl PhysicalWorld {
         let (images, words) = images::pack(&scene.images);
         let (scatters, tables) = scatters::flatten(&scene.materials);
         let of_images = Images { images: &images, words: &words };
-        let faces = faces::faces(&mut builder);
-        let lights = emitters::collect(scene, origin, &builder, &scatters);
-        let tree = emitter_tree::build(&lights.emitters[..lights.placed], &of_images);
+        let faces = faces::faces(&builder);
         let all = builder.boxes.iter().copied().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         let position = (scene.camera.position - origin).as_vec3();
         let extent = all.map_or(0.0, |(lower, upper): (Vec3, Vec3)| (upper - lower).length());
-        faces::overlap(&mut builder, extent);
+        let outlines = overlap::overlap(&mut builder, extent);
+        faces::set_slacks(&mut builder, &faces);
+        let lights = emitters::collect(scene, origin, (&builder, &outlines), &scatters);
+        let tree = emitter_tree::build(&lights.emitters[..lights.placed], &of_images);
         let mut world = Self {
             faces,
             has_masks: scatters.iter().any(|scatter| scatter.mask_image != NONE),
-            shapes: builder.finish(position.abs().max_element(), Widened::ButFlat),
+            shapes: builder.finish(position.abs().max_element(), TriangleForm::Corners),
             textured: (0..scatters.len()).map(|index| scatters::is_textured(&scatters, index)).collect(),
             scatters,
             tables,
@@ -109,7 +111,7 @@ impl PhysicalWorld {
             bounds: all.unwrap_or_default(),
             camera: scene.camera.clone(),
         };
-        world.settle_ties();
+        world.settle_ties(&outlines);
         debug_assert_eq!(world.validate(), Ok(()));
         Ok(world)
     }

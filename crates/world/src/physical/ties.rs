@@ -5,11 +5,11 @@
 //! of them and so would count each. Both go by one rule, for which the ties are listed here: of surfaces in one place
 //! the first that shines towards a ray is met, else the first in file order.
 
-use super::faces::{square_without_overlap, without_overlap};
-use crate::bvh::{ChildRef, LANES};
+use super::overlap::Outlines;
+use crate::bvh::{ChildRef, LANES, TriangleBlock};
 use crate::{Shapes, physical::PhysicalWorld};
 use glam::{DVec2, DVec3, Vec3};
-use lightcuts_kernel::intersect::{Sphere, Square, Triangle};
+use lightcuts_kernel::intersect::{Sphere, Square};
 use lightcuts_kernel::ray::NONE;
 use lightcuts_kernel::rounding::UNIT;
 
@@ -19,8 +19,7 @@ const RELATIVE_DISTANCE: f64 = 1e-5;
 /// The same in roundings of coordinates.
 const ROUNDINGS: f64 = 8.0 * UNIT as f64;
 
-/// Share of the smaller surface that must be in both, without what they reach beyond their edges: neighbours in a mesh
-/// share these only.
+/// Share of the smaller surface that must be in both: neighbours share no more than rounding makes of an edge.
 const LEAST_SHARE: f64 = 1e-4;
 
 /// Least cosine between the planes of what lies in one place.
@@ -41,8 +40,8 @@ pub struct Ties {
 pub struct Tied {
     /// Its number.
     pub primitive: u32,
-    /// Its form, if it is a triangle; else of no use.
-    pub triangle: Triangle,
+    /// Its corners, if it is a triangle; else of no use.
+    pub corners: [Vec3; 3],
 }
 
 impl Ties {
@@ -65,21 +64,22 @@ impl Ties {
         if self.tied.is_empty() { 0.0 } else { self.slacks[primitive as usize] }
     }
 
-    /// Finds the ties of the primitives for which `is_asked`; `extent` is the diagonal of the scene.
-    fn find(shapes: &Shapes, extent: f64, is_asked: impl Fn(usize) -> bool) -> Self {
+    /// Finds the ties of the primitives for which `is_asked`, by what these are without the overlap of their borders.
+    fn find(shapes: &Shapes, outlines: &Outlines, is_asked: impl Fn(usize) -> bool) -> Self {
         let mut pairs = Vec::new();
         let asked = |primitive: u32| (primitive as usize) < shapes.primitives.len() && is_asked(primitive as usize);
-        let triangles = shapes.triangles.iter().flat_map(|block| (0..LANES).map(|lane| block.triangle(lane)));
-        let forms = triangles.filter(|triangle| asked(triangle.primitive));
-        let forms = forms.map(|triangle| Form::triangle(triangle, extent));
+        let lanes = shapes.triangles.iter().flat_map(|block| (0..LANES).map(move |lane| (block, lane)));
+        let lanes = lanes.filter(|(block, lane)| asked(block.primitive[*lane]));
+        let forms = lanes.map(|(block, lane)| Form::triangle(shapes, outlines, block, lane));
         let forms = forms.chain(shapes.spheres.iter().filter(|sphere| asked(sphere.primitive)).map(Form::sphere));
-        let squares = shapes.squares.iter().filter(|square| asked(square.primitive));
-        let forms = forms.chain(squares.map(|square| Form::square(square, extent)));
+        let squares = outlines.squares.iter().filter(|square| asked(square.primitive));
+        let forms = forms.chain(squares.map(Form::square));
         for form in forms {
-            visit(shapes, extent, &form, |other| {
-                if other.primitive != form.primitive && form.is_in_place_of(&other) {
-                    pairs.push((form.primitive, other.tied(), form.tolerance));
-                    pairs.push((other.primitive, form.tied(), form.tolerance));
+            visit(shapes, outlines, &form, |other| {
+                let (mine, others) = (form.tied, other.tied);
+                if others.primitive != mine.primitive && form.is_in_place_of(&other) {
+                    pairs.push((mine.primitive, others, form.tolerance));
+                    pairs.push((others.primitive, mine, form.tolerance));
                 }
             });
         }
@@ -112,12 +112,11 @@ impl Ties {
 
 impl PhysicalWorld {
     /// Moves the emission of tied emitters past what lies in their place.
-    pub(super) fn settle_ties(&mut self) {
-        let Self { shapes, primitive_emitters, scatters, bounds, .. } = &*self;
+    pub(super) fn settle_ties(&mut self, outlines: &Outlines) {
+        let Self { shapes, primitive_emitters, scatters, .. } = &*self;
         let has_holes = |primitive: usize| scatters[shapes.primitives[primitive].material as usize].mask_image != NONE;
-        let extent = f64::from((bounds.1 - bounds.0).length());
         self.ties =
-            Ties::find(shapes, extent, |primitive| primitive_emitters[primitive] != NONE || has_holes(primitive));
+            Ties::find(shapes, outlines, |primitive| primitive_emitters[primitive] != NONE || has_holes(primitive));
         for emitter in self.emitters.iter_mut().filter(|emitter| emitter.primitive != NONE) {
             emitter.slack = emitter.slack.max(self.ties.slack(emitter.primitive));
         }
@@ -126,8 +125,7 @@ impl PhysicalWorld {
 
 /// The form of a primitive, for comparison.
 struct Form {
-    primitive: u32,
-    triangle: Triangle,
+    tied: Tied,
     outline: Outline,
     /// Unit normal of its plane; zero of a sphere and of what has no area.
     normal: DVec3,
@@ -136,7 +134,7 @@ struct Form {
 }
 
 enum Outline {
-    /// Corners in order, without what the primitive reaches beyond its edges.
+    /// Corners in order.
     Triangle([DVec3; 3]),
     Square([DVec3; 4]),
     Sphere(Sphere),
@@ -154,32 +152,29 @@ impl Outline {
 }
 
 impl Form {
-    fn triangle(triangle: Triangle, extent: f64) -> Self {
-        let corner = triangle.corner.as_dvec3();
-        let corners = [corner, corner + triangle.edge1.as_dvec3(), corner + triangle.edge2.as_dvec3()];
-        let outline = Outline::Triangle(without_overlap(&corners, extent));
-        Self::flat(triangle.primitive, triangle, outline, &corners)
+    fn triangle(shapes: &Shapes, outlines: &Outlines, block: &TriangleBlock, lane: usize) -> Self {
+        let primitive = block.primitive[lane];
+        let points = &outlines.points[shapes.primitives[primitive as usize].index as usize];
+        Self::flat(Tied { primitive, corners: block.lane(lane) }, Outline::Triangle(points.map(Vec3::as_dvec3)))
     }
 
-    fn square(square: &Square, extent: f64) -> Self {
+    fn square(square: &Square) -> Self {
         let (center, across, along) = (square.center.as_dvec3(), square.across.as_dvec3(), square.along.as_dvec3());
-        let corners = |[half_width, half_height]: [f64; 2]| {
-            let (across, along) = (across * half_width, along * half_height);
-            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(u, v)| center + across * u + along * v)
-        };
-        let outline = Outline::Square(corners(square_without_overlap(square, extent)));
-        let halves = [square.half_width, square.half_height].map(f64::from);
-        Self::flat(square.primitive, NO_TRIANGLE, outline, &corners(halves))
+        let (across, along) = (across * f64::from(square.half_width), along * f64::from(square.half_height));
+        let corners =
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(u, v)| center + across * u + along * v);
+        Self::flat(Tied { primitive: square.primitive, corners: NO_CORNERS }, Outline::Square(corners))
     }
 
-    fn flat(primitive: u32, triangle: Triangle, outline: Outline, corners: &[DVec3]) -> Self {
+    fn flat(tied: Tied, outline: Outline) -> Self {
+        let corners = outline.corners();
         let lower = corners.iter().copied().reduce(DVec3::min).unwrap_or_default();
         let upper = corners.iter().copied().reduce(DVec3::max).unwrap_or_default();
         let coordinate = lower.abs().max(upper.abs()).max_element();
         let tolerance = (upper - lower).length() * RELATIVE_DISTANCE + coordinate * ROUNDINGS;
         let bounds = ((lower - tolerance).as_vec3(), (upper + tolerance).as_vec3());
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-        Self { primitive, triangle, outline, normal, tolerance, bounds }
+        Self { tied, outline, normal, tolerance, bounds }
     }
 
     fn sphere(sphere: &Sphere) -> Self {
@@ -187,8 +182,7 @@ impl Form {
         let tolerance = f64::from(sphere.radius) * RELATIVE_DISTANCE + coordinate * ROUNDINGS;
         let bounds = (sphere.center - sphere.radius, sphere.center + sphere.radius);
         Self {
-            primitive: sphere.primitive,
-            triangle: NO_TRIANGLE,
+            tied: Tied { primitive: sphere.primitive, corners: NO_CORNERS },
             outline: Outline::Sphere(*sphere),
             normal: DVec3::ZERO,
             tolerance,
@@ -196,21 +190,16 @@ impl Form {
         }
     }
 
-    fn tied(&self) -> Tied {
-        Tied { primitive: self.primitive, triangle: self.triangle }
-    }
-
     /// Whether a triangle may lie in the place of this form: finds most of those that do not, before a form is made of
     /// them.
-    fn may_hold(&self, triangle: &Triangle) -> bool {
+    fn may_hold(&self, triangle: [Vec3; 3]) -> bool {
         let Some(&corner) = self.outline.corners().first() else { return false };
-        let (edge1, edge2) = (triangle.edge1.as_dvec3(), triangle.edge2.as_dvec3());
-        let cross = edge1.cross(edge2);
+        let [a, b, c] = triangle.map(Vec3::as_dvec3);
+        let cross = (b - a).cross(c - a);
         if cross.dot(self.normal).abs() < 0.999 * LEAST_SLOPE * cross.length() {
             return false;
         }
-        let height = self.normal.dot(triangle.corner.as_dvec3() - corner);
-        let heights = [height, height + self.normal.dot(edge1), height + self.normal.dot(edge2)];
+        let heights = [a, b, c].map(|p| self.normal.dot(p - corner));
         let far = 2.0 * self.tolerance;
         heights.iter().any(|height| *height <= far) && heights.iter().any(|height| *height >= -far)
     }
@@ -231,11 +220,11 @@ impl Form {
     }
 }
 
-const NO_TRIANGLE: Triangle =
-    Triangle { corner: Vec3::ZERO, primitive: NONE, edge1: Vec3::ZERO, padding0: 0, edge2: Vec3::ZERO, padding1: 0 };
+/// Of what is no triangle.
+const NO_CORNERS: [Vec3; 3] = [Vec3::ZERO; 3];
 
 /// Visits all primitives whose boxes meet that of a form.
-fn visit(shapes: &Shapes, extent: f64, form: &Form, mut report: impl FnMut(Form)) {
+fn visit(shapes: &Shapes, outlines: &Outlines, form: &Form, mut report: impl FnMut(Form)) {
     let mut open: Vec<u32> = if shapes.nodes.is_empty() { Vec::new() } else { vec![0] };
     while let Some(node) = open.pop() {
         let node = &shapes.nodes[node as usize];
@@ -246,13 +235,12 @@ fn visit(shapes: &Shapes, extent: f64, form: &Form, mut report: impl FnMut(Form)
             match ChildRef::unpack(node.child[lane]) {
                 ChildRef::Node(child) => open.push(child),
                 ChildRef::Sphere(i) => report(Form::sphere(&shapes.spheres[i as usize])),
-                ChildRef::Square(i) => report(Form::square(&shapes.squares[i as usize], extent)),
+                ChildRef::Square(i) => report(Form::square(&outlines.squares[i as usize])),
                 ChildRef::Triangles(i) => {
                     let block = &shapes.triangles[i as usize];
-                    let there = (0..LANES).map(|lane| block.triangle(lane)).filter(|t| t.primitive != NONE);
-                    there
-                        .filter(|triangle| form.may_hold(triangle))
-                        .for_each(|triangle| report(Form::triangle(triangle, extent)));
+                    (0..LANES)
+                        .filter(|&lane| block.primitive[lane] != NONE && form.may_hold(block.lane(lane)))
+                        .for_each(|lane| report(Form::triangle(shapes, outlines, block, lane)));
                 }
             }
         }
