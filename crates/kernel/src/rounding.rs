@@ -19,9 +19,6 @@ const TEST_ERRORS: f32 = 8.0;
 /// The same on a sphere, whose roots are of squares.
 const SPHERE_ERRORS: f32 = 4.0;
 
-/// The same of a place between a triangle's corners, on the distances of these: however thin the triangle is.
-const CORNER_TEST_ERRORS: f32 = 16.0;
-
 /// Least distance from a surface, in roundings of the greatest coordinate.
 const LEAST_ERRORS: f32 = 2.0;
 
@@ -75,8 +72,7 @@ pub fn triangle_slack(edge1: Vec3, edge2: Vec3) -> f32 {
     let products =
         Vec3::new(reach.y * a.z + reach.z * a.y, reach.z * a.x + reach.x * a.z, reach.x * a.y + reach.y * a.x);
     let doubled_area = edge1.cross(edge2).length();
-    let of_plane = if doubled_area > 0.0 { TEST_ERRORS * b.dot(products) / doubled_area } else { 0.0 };
-    UNIT * of_plane.min(CORNER_TEST_ERRORS * reach.length())
+    if doubled_area > 0.0 { UNIT * TEST_ERRORS * b.dot(products) / doubled_area } else { 0.0 }
 }
 
 #[cfg(test)]

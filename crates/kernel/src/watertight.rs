@@ -3,15 +3,10 @@
 //! After Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection": seen along the ray, corners that triangles
 //! share lie at the same place for each, and on which side of an edge the ray passes comes out with opposite signs for
 //! both. Differs: a ray right through an edge hits both, which needs no wider numbers; and the distance is that of the
-//! triangle's plane, as exact as there is one, but never outside of what is certain of the triangle itself.
+//! triangle's plane, next to which rays begin, but no nearer and no farther than its corners.
 
 use crate::ray::{Hit, Ray};
-use crate::rounding::UNIT;
 use glam::Vec3;
-
-/// By how much the distance along a ray may be off that comes from the corners', relative to the farthest of them, where
-/// the triangle is not seen from its side.
-pub const CORNER_SPREAD: f32 = 8.0 * UNIT;
 
 /// Space as a ray sees it: axes turned so that its longest comes last, and moved along that one so that it is the ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +46,8 @@ pub fn longest_axis(direction: Vec3) -> usize {
     }
 }
 
-/// A triangle by its corners, from either side. `shear` is that of the ray's direction. Arithmetic in the order of the
+/// A triangle by its corners, from either side; its plane is the more exact the shorter the edges at the first corner are.
+/// `shear` is that of the ray's direction. Arithmetic in the order of the
 /// formulas, no fma: else edges would have other signs from either side, and devices other bits.
 pub fn intersect_watertight(corners: &[Vec3; 3], primitive: u32, ray: &Ray, shear: &Shear) -> Option<Hit> {
     let corners = corners.map(|corner| shear.turned(corner));
@@ -67,12 +63,11 @@ pub fn intersect_watertight(corners: &[Vec3; 3], primitive: u32, ray: &Ray, shea
         return None;
     }
     let inverse = 1.0 / sum;
-    let from_corners = ((of_a * a.z + of_b * b.z) + of_c * c.z) * inverse * shear.scale;
-    let spread = a.z.abs().max(b.z.abs()).max(c.z.abs()) * (shear.scale.abs() * CORNER_SPREAD);
     let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     let of_plane = normal.dot(a) / normal.dot(shear.turned(ray.direction));
+    let [at_a, at_b, at_c] = [a.z, b.z, c.z].map(|z| z * shear.scale);
     // A triangle that has no plane, or is seen from its side, is where its corners are.
-    let t = of_plane.max(from_corners - spread).min(from_corners + spread);
+    let t = of_plane.max(at_a.min(at_b).min(at_c)).min(at_a.max(at_b).max(at_c));
     (t > ray.t_min && t < ray.t_max).then_some(Hit { t, primitive, u: of_b * inverse, v: of_c * inverse })
 }
 
@@ -80,6 +75,7 @@ pub fn intersect_watertight(corners: &[Vec3; 3], primitive: u32, ray: &Ray, shea
 mod tests {
     use super::*;
     use crate::rng::random4;
+    use crate::rounding::UNIT;
 
     fn vector(k: u32, what: u32) -> Vec3 {
         let [x, y, z, _] = random4(k, what, 0, 93);
@@ -168,7 +164,8 @@ mod tests {
             let start = ray(target - direction.normalize() * 5.0, direction.normalize());
             let Some(hit) = hit(&corners, &start) else { continue };
             hits += 1;
-            let along = corners.map(|corner| (corner - start.origin).dot(start.direction));
+            let Shear { axes, scale, .. } = Shear::new(start.direction);
+            let along = corners.map(|corner| (corner - start.origin)[axes[2]] * scale);
             let (least, greatest) = (along[0].min(along[1]).min(along[2]), along[0].max(along[1]).max(along[2]));
             assert!(hit.t > least - 1e-5 && hit.t < greatest + 1e-5, "{k}: {} of {least} to {greatest}", hit.t);
         }

@@ -8,7 +8,7 @@
 
 use super::avx2_trace::{Wide3, cross, dot, sub};
 use glam::Vec3;
-use lightcuts_kernel::watertight::{CORNER_SPREAD, Shear};
+use lightcuts_kernel::watertight::Shear;
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_LE_OQ, _CMP_NEQ_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_cmp_ps,
     _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_ps,
@@ -94,16 +94,13 @@ pub(super) fn cross_watertight(
         return (inside, [zero; 3]);
     }
     let inverse = _mm256_div_ps(_mm256_set1_ps(1.0), sum);
-    let from_corners = _mm256_mul_ps(_mm256_mul_ps(dot([of_a, of_b, of_c], [a[2], b[2], c[2]]), inverse), shear.scale);
-    let sign_bit = _mm256_set1_ps(-0.0);
-    let magnitude = |value: __m256| _mm256_andnot_ps(sign_bit, value);
-    let farthest = _mm256_max_ps(_mm256_max_ps(magnitude(a[2]), magnitude(b[2])), magnitude(c[2]));
-    let spread = _mm256_mul_ps(farthest, _mm256_mul_ps(magnitude(shear.scale), _mm256_set1_ps(CORNER_SPREAD)));
     let normal = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
     let of_plane = _mm256_div_ps(dot(normal, a), dot(normal, direction));
+    let at = |z: __m256| _mm256_mul_ps(z, shear.scale);
+    let (at_a, at_b, at_c) = (at(a[2]), at(b[2]), at(c[2]));
     // What is no number gives way to the second of both operands.
-    let t = _mm256_max_ps(of_plane, _mm256_sub_ps(from_corners, spread));
-    let t = _mm256_min_ps(t, _mm256_add_ps(from_corners, spread));
+    let t = _mm256_max_ps(of_plane, _mm256_min_ps(_mm256_min_ps(at_a, at_b), at_c));
+    let t = _mm256_min_ps(t, _mm256_max_ps(_mm256_max_ps(at_a, at_b), at_c));
     (inside, [t, _mm256_mul_ps(of_b, inverse), _mm256_mul_ps(of_c, inverse)])
 }
 

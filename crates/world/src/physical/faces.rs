@@ -22,6 +22,24 @@ pub struct Face {
     pub offset: f32,
 }
 
+/// Makes the corner opposite to the longest edge the first one, so that planes are exact: of two long edges that run next
+/// to each other the product is mostly rounding.
+pub(super) fn begin_at_short_edges(builder: &mut Builder) {
+    for (points, corners) in builder.points.iter_mut().zip(&mut builder.corners) {
+        let opposite = |k: usize| points[(k + 1) % 3].distance_squared(points[(k + 2) % 3]);
+        let first = if opposite(0) >= opposite(1).max(opposite(2)) {
+            0
+        } else if opposite(1) >= opposite(2) {
+            1
+        } else {
+            2
+        };
+        points.rotate_left(first);
+        corners.normals.rotate_left(first);
+        corners.texture_coordinates.rotate_left(first);
+    }
+}
+
 /// The planes of all triangles, in file order.
 pub(super) fn faces(builder: &Builder) -> Vec<Face> {
     builder.points.iter().zip(&builder.corners).map(|(points, corners)| face(points, corners)).collect()

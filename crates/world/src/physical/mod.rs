@@ -83,6 +83,7 @@ impl PhysicalWorld {
         let (images, words) = images::pack(&scene.images);
         let (scatters, tables) = scatters::flatten(&scene.materials);
         let of_images = Images { images: &images, words: &words };
+        faces::begin_at_short_edges(&mut builder);
         let faces = faces::faces(&builder);
         let all = builder.boxes.iter().copied().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         let position = (scene.camera.position - origin).as_vec3();
