@@ -8,6 +8,7 @@ use crate::shapes::Builder;
 use glam::{DVec3, Vec3};
 use lightcuts_kernel::intersect::Square;
 use lightcuts_kernel::rounding::UNIT;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 /// How far borders reach, in roundings of their greatest coordinate or size: more than the errors of their corners.
 const CORNER_ERRORS: f64 = 32.0;
@@ -112,34 +113,30 @@ fn move_borders(points: &mut [[Vec3; 3]], extent: f64) {
 
 /// A number for each place where corners are, the same for all that are there; and how many there are.
 fn named(points: &[[Vec3; 3]]) -> (Vec<[u32; 3]>, usize) {
-    // Minus zero is where zero is.
-    let key = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
-    let mut corners: Vec<([u32; 3], u32)> = points.as_flattened().iter().map(|&p| key(p)).zip(0..).collect();
-    corners.sort_unstable();
-    let mut names = vec![[0; 3]; points.len()];
-    let (mut places, mut last) = (0, None);
-    for (key, corner) in corners {
-        if last != Some(key) {
-            (places, last) = (places + 1, Some(key));
-        }
-        names.as_flattened_mut()[corner as usize] = places as u32 - 1;
-    }
-    (names, places)
+    let mut places = FxHashMap::with_capacity_and_hasher(points.len(), FxBuildHasher);
+    let mut name = |point: Vec3| {
+        let next = places.len() as u32;
+        // Minus zero is where zero is.
+        *places.entry((point + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert(next)
+    };
+    let names = points.iter().map(|points| points.map(&mut name)).collect();
+    (names, places.len())
 }
 
 /// Edges that belong to one triangle alone: that triangle, and the first of both corners in it.
 fn borders(names: &[[u32; 3]]) -> Vec<(usize, usize)> {
-    let edge = |triangle: usize, from: usize| {
-        let (a, b) = (names[triangle][from], names[triangle][(from + 1) % 3]);
-        (u64::from(a.min(b)) << 32 | u64::from(a.max(b)), (3 * triangle + from) as u32)
-    };
-    let mut edges: Vec<(u64, u32)> = (0..names.len())
-        .flat_map(|triangle| (0..3).map(move |from| (triangle, from)))
-        .map(|(t, k)| edge(t, k))
-        .collect();
-    edges.sort_unstable();
-    let alone = edges.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 1).map(|same| same[0].1 as usize);
-    alone.map(|corner| (corner / 3, corner % 3)).collect()
+    // The triangle and the corner of each edge, or none where there are more.
+    let mut edges = FxHashMap::with_capacity_and_hasher(2 * names.len(), FxBuildHasher);
+    for (triangle, names) in names.iter().enumerate() {
+        for from in 0..3 {
+            let (a, b) = (names[from], names[(from + 1) % 3]);
+            let alone = Some((triangle, from));
+            edges.entry((a.min(b), a.max(b))).and_modify(|of| *of = None).or_insert(alone);
+        }
+    }
+    let mut borders: Vec<(usize, usize)> = edges.into_values().flatten().collect();
+    borders.sort_unstable();
+    borders
 }
 
 #[cfg(test)]
