@@ -2,6 +2,7 @@
 
 use crate::bsdf::{Bsdf, PLASTIC, energy_at};
 use crate::ray::NONE;
+use crate::rounding::UNIT;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
@@ -22,6 +23,9 @@ pub struct VirtualLight {
     /// Whether the shading normal is another than the surface's: 0 or 1.
     pub is_bent: u32,
 }
+
+/// Least cosine that counts: of light along a surface rounding decides on which side of it goes.
+pub const LEAST_COSINE: f32 = 16.0 * UNIT;
 
 /// A unit vector in two numbers of 16 bits, on an octahedron (Cigolle et al. 2014).
 pub fn pack_direction(direction: Vec3) -> u32 {
@@ -60,7 +64,7 @@ pub fn virtual_table(bsdf: &Bsdf) -> u32 {
 pub fn virtual_emission(light: &VirtualLight, tables: &[f32], direction: Vec3) -> f32 {
     let cos = light.normal.dot(direction);
     let of_shading = shading_normal(light).dot(direction);
-    if cos <= 0.0 || of_shading <= 0.0 {
+    if cos <= LEAST_COSINE || of_shading <= LEAST_COSINE {
         return 0.0;
     }
     if light.table == NONE { cos } else { cos * (1.0 - energy_at(tables, light.table, false, of_shading)) }

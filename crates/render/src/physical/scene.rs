@@ -16,6 +16,7 @@ use lightcuts_kernel::scatter::{
 };
 use lightcuts_kernel::surface::{Surface, surface_at};
 use lightcuts_kernel::texture::surface_point;
+use lightcuts_kernel::virtual_light::LEAST_COSINE;
 use lightcuts_world::PhysicalWorld;
 use lightcuts_world::bvh::LANES;
 use lightcuts_world::physical::Face;
@@ -274,7 +275,8 @@ impl Interaction {
 
     /// Whether both normals have a direction on one side: else light would leak through the surface.
     fn is_sound(&self, direction: Vec3, local: Vec3) -> bool {
-        self.face.dot(direction) * local.z > 0.0
+        let (of_face, cos) = (self.face.dot(direction), local.z);
+        of_face * cos > 0.0 && of_face.abs().min(cos.abs()) > LEAST_COSINE
     }
 
     /// BSDF times cosine of some lobes.

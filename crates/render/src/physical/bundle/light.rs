@@ -7,7 +7,7 @@ use crate::physical::sums::Counts;
 use glam::Vec3;
 use lightcuts_kernel::ray::NONE;
 use lightcuts_kernel::rounding::{APPROACH, REACH};
-use lightcuts_kernel::virtual_light::{VirtualLight, shading_normal, virtual_emission};
+use lightcuts_kernel::virtual_light::{LEAST_COSINE, VirtualLight, shading_normal, virtual_emission};
 use lightcuts_world::bvh::LANES;
 
 impl Bundle<'_> {
@@ -49,7 +49,7 @@ impl Bundle<'_> {
             L::load(&std::array::from_fn(|lane| virtual_emission(light, tables, each(lane))))
         };
         let clamped = distance_sq.max(L::splat(self.receivers[0].bound.clamp_sq));
-        let geometry = (emitted / clamped).and(facing.greater(zero));
+        let geometry = (emitted / clamped).and(facing.greater(L::splat(LEAST_COSINE)));
         let color: Wide3<L> = loaded(&self.color);
         scaled(product(scaled(color, cos), splat3(light.intensity)), geometry)
     }

@@ -9,3 +9,4 @@ mod one_place;
 mod oracle;
 mod places;
 mod scenes;
+mod seams;
