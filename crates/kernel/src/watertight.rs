@@ -52,7 +52,7 @@ pub fn longest_axis(direction: Vec3) -> usize {
 pub fn intersect_watertight(corners: &[Vec3; 3], primitive: u32, ray: &Ray, shear: &Shear) -> Option<Hit> {
     let corners = corners.map(|corner| shear.turned(corner));
     let [a, b, c] = corners.map(|corner| corner - shear.turned(ray.origin));
-    let flat = |p: Vec3| [(-shear.slope[0]).mul_add(p.z, p.x), (-shear.slope[1]).mul_add(p.z, p.y)];
+    let flat = |p: Vec3| [p.x - shear.slope[0] * p.z, p.y - shear.slope[1] * p.z];
     let edge = |p: [f32; 2], q: [f32; 2]| p[0] * q[1] - p[1] * q[0];
     let [flat_a, flat_b, flat_c] = [flat(a), flat(b), flat(c)];
     let (of_a, of_b, of_c) = (edge(flat_b, flat_c), edge(flat_c, flat_a), edge(flat_a, flat_b));

@@ -11,8 +11,8 @@ use glam::Vec3;
 use lightcuts_kernel::watertight::Shear;
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_LE_OQ, _CMP_NEQ_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_cmp_ps,
-    _mm256_div_ps, _mm256_fnmadd_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps,
-    _mm256_set1_ps, _mm256_setzero_ps, _mm256_sub_ps,
+    _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_ps,
+    _mm256_setzero_ps, _mm256_sub_ps,
 };
 
 /// Eight of `kernel::watertight::Shear` that agree on the longest axis.
@@ -78,7 +78,7 @@ pub(super) fn cross_watertight(
     let zero = _mm256_setzero_ps();
     let (a, b, c) = (sub(corners[0], origin), sub(corners[1], origin), sub(corners[2], origin));
     let flat = |p: Wide3| {
-        let moved = |axis: usize| _mm256_fnmadd_ps(shear.slope[axis], p[2], p[axis]);
+        let moved = |axis: usize| _mm256_sub_ps(p[axis], _mm256_mul_ps(shear.slope[axis], p[2]));
         [moved(0), moved(1)]
     };
     let edge = |p: [__m256; 2], q: [__m256; 2]| _mm256_sub_ps(_mm256_mul_ps(p[0], q[1]), _mm256_mul_ps(p[1], q[0]));
