@@ -133,7 +133,7 @@ mod tests {
             let towards = rim[(which * BLADES as f32) as usize % BLADES] - middle;
             let target = middle + towards * [0.9 * along, 1e-6 * along, 0.0][k as usize / 2 % 3];
             let height = 10.0_f32.powf(-3.0 * lift);
-            let (sin, cos) = (turn * 6.28).sin_cos();
+            let (sin, cos) = (turn * std::f32::consts::TAU).sin_cos();
             let origin = target + (right * cos + up * sin) * 3.0 + normal * height;
             let start = ray(origin, (target - origin) * [1.0, 0.01][k as usize % 2]);
             let of_blade = |j: usize| hit(&[middle, rim[j], rim[(j + 1) % BLADES]], &start);

@@ -100,7 +100,7 @@ impl<'a, const CORNERS: bool> Bundle<'a, CORNERS> {
         }
         let turned = |of: &[[f32; LANES]; 3]| self.shear.turned(&splat_lane(of, lane));
         let corners = [turned(&block.a), turned(&block.b), turned(&block.c)];
-        let (inside, [t, u, v]) = cross_watertight(self.turned[0], self.turned[1], &self.shear, corners);
+        let (inside, [t, u, v]) = cross_watertight(self.turned[0], self.turned[1], &self.shear, &corners);
         (_mm256_and_ps(_mm256_and_ps(inside, spread(self.asked)), self.packet.between_ends(t)), [t, u, v])
     }
 

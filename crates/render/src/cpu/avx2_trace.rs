@@ -202,7 +202,7 @@ impl<const CORNERS: bool> WideRay<CORNERS> {
                 [load(x), load(y), load(z)]
             };
             let triangles = [load3(&block.a), load3(&block.b), load3(&block.c)];
-            cross_watertight(self.origin, self.direction, &self.shear, triangles)
+            cross_watertight(self.origin, self.direction, &self.shear, &triangles)
         } else {
             let triangles = [load3(&block.a), load3(&block.b), load3(&block.c)];
             cross_triangles(self.origin, self.direction, triangles, min_determinant)

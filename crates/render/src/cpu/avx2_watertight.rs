@@ -73,7 +73,7 @@ pub(super) fn cross_watertight(
     origin: Wide3,
     direction: Wide3,
     shear: &WideShear,
-    corners: [Wide3; 3],
+    corners: &[Wide3; 3],
 ) -> (__m256, [__m256; 3]) {
     let zero = _mm256_setzero_ps();
     let (a, b, c) = (sub(corners[0], origin), sub(corners[1], origin), sub(corners[2], origin));

@@ -6,7 +6,7 @@ use crate::cpu::{Simd, Tracer};
 use crate::settings::Integrator;
 use glam::{DAffine3, DVec3, Vec3};
 use lightcuts_kernel::Rules;
-use lightcuts_kernel::ray::Ray;
+use lightcuts_kernel::ray::{Hit, Ray};
 use lightcuts_kernel::rng::random4;
 use lightcuts_scene::physical::{EmitterDesc, EmitterKind, PhysicalCamera, PhysicalScene, View};
 use lightcuts_scene::{Location, MeshDesc, MeshTriangle};
@@ -83,7 +83,7 @@ fn floors_have_no_seams() {
             for simd in [Simd::Off, Simd::Auto] {
                 let tracer = Tracer::new(world.shapes.geometry(), Rules::Repaired, simd);
                 assert_eq!(tracer.occluded8(&rays, 0xff), 0xff, "{quads:?}, {simd:?}, {k}");
-                assert!(tracer.closest8(&rays).iter().all(|hit| hit.is_some()), "{quads:?}, {simd:?}, {k}");
+                assert!(tracer.closest8(&rays).iter().all(Hit::is_some), "{quads:?}, {simd:?}, {k}");
                 let alone = &rays[k as usize % LANES];
                 assert!(tracer.closest(alone).is_some() && tracer.occluded(alone), "{quads:?}, {simd:?}, {k}");
             }
