@@ -8,7 +8,7 @@
 
 use super::avx2_packet::{Packet, meet, meet_any, sphere_from};
 use super::avx2_trace::{
-    Wide3, WideRay, any_hit, block, closest_hit, lanes, load, nearer_hit, other_hit, splat_lane, splat3, spread, store,
+    Wide3, WideRay, any_hit, block, closest_hit, lanes, load, nearer_hit, other_hit, splat3, spread, store,
 };
 use super::avx2_watertight::{WideShear, cross_watertight};
 use super::half_spaces::FEW;
@@ -98,8 +98,8 @@ impl<'a, const CORNERS: bool> Bundle<'a, CORNERS> {
         if !CORNERS {
             return self.packet.intersect(block, lane, least);
         }
-        let turned = |of: &[[f32; LANES]; 3]| self.shear.turned(&splat_lane(of, lane));
-        let corners = [turned(&block.a), turned(&block.b), turned(&block.c)];
+        let splat = |of: &[[f32; LANES]; 3]| self.shear.splat_lane(of, lane);
+        let corners = [splat(&block.a), splat(&block.b), splat(&block.c)];
         let (inside, [t, u, v]) = cross_watertight(self.turned[0], self.turned[1], &self.shear, &corners);
         (_mm256_and_ps(_mm256_and_ps(inside, spread(self.asked)), self.packet.between_ends(t)), [t, u, v])
     }

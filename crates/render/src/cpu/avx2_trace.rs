@@ -197,11 +197,7 @@ impl<const CORNERS: bool> WideRay<CORNERS> {
     #[inline]
     pub(super) fn intersect(&self, block: &TriangleBlock, min_determinant: f32) -> (u32, [__m256; 3]) {
         let (inside, [t, u, v]) = if CORNERS {
-            let load3 = |of: &[[f32; LANES]; 3]| {
-                let [x, y, z] = self.shear.turned(&[&of[0], &of[1], &of[2]]);
-                [load(x), load(y), load(z)]
-            };
-            let triangles = [load3(&block.a), load3(&block.b), load3(&block.c)];
+            let triangles = [self.shear.load3(&block.a), self.shear.load3(&block.b), self.shear.load3(&block.c)];
             cross_watertight(self.origin, self.direction, &self.shear, &triangles)
         } else {
             let triangles = [load3(&block.a), load3(&block.b), load3(&block.c)];

@@ -6,9 +6,10 @@
 
 #![allow(unsafe_code)]
 
-use super::avx2_trace::{Wide3, cross, dot, sub};
+use super::avx2_trace::{Wide3, cross, dot, load, sub};
 use glam::Vec3;
 use lightcuts_kernel::watertight::Shear;
+use lightcuts_world::bvh::LANES;
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_LE_OQ, _CMP_NEQ_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_cmp_ps,
     _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_ps,
@@ -18,6 +19,7 @@ use std::arch::x86_64::{
 /// Eight of `kernel::watertight::Shear` that agree on the longest axis.
 #[derive(Clone, Copy)]
 pub(super) struct WideShear {
+    /// 0, 1 and 2 in some order.
     axes: [usize; 3],
     slope: [__m256; 2],
     scale: __m256,
@@ -58,10 +60,27 @@ impl WideShear {
         Self { axes: [0, 1, 2], slope: [zero; 2], scale: zero }
     }
 
-    /// Components in turned order. The minimum spares a check of bounds.
+    /// Components in turned order.
+    pub(super) fn turned(&self, of: &Wide3) -> Wide3 {
+        self.axes.map(|axis| of[axis])
+    }
+
+    /// Vectors of eight lanes from memory, in turned order.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    pub(super) fn turned<T: Copy>(&self, of: &[T; 3]) -> [T; 3] {
-        [of[self.axes[0].min(2)], of[self.axes[1].min(2)], of[self.axes[2].min(2)]]
+    pub(super) fn load3(&self, of: &[[f32; LANES]; 3]) -> Wide3 {
+        // SAFETY: the axes are 0, 1 and 2 in some order.
+        let lanes = |axis: usize| load(unsafe { of.get_unchecked(axis) });
+        [lanes(self.axes[0]), lanes(self.axes[1]), lanes(self.axes[2])]
+    }
+
+    /// The vector of one lane, in all lanes, in turned order.
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
+    pub(super) fn splat_lane(&self, of: &[[f32; LANES]; 3], lane: usize) -> Wide3 {
+        // SAFETY: the axes are 0, 1 and 2 in some order.
+        let splat = |axis: usize| _mm256_set1_ps(unsafe { of.get_unchecked(axis) }[lane % LANES]);
+        [splat(self.axes[0]), splat(self.axes[1]), splat(self.axes[2])]
     }
 }
 
