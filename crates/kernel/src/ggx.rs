@@ -38,6 +38,7 @@ pub fn visible_normal_pdf(wo: Vec3, h: Vec3, alpha: f32) -> f32 {
 
 /// A microfacet normal among those seen from `wo`, whose z is above 0 (Heitz 2018, "Sampling the GGX Distribution of Visible
 /// Normals").
+#[inline]
 pub fn sample_visible_normal(wo: Vec3, alpha: f32, random: [f32; 2]) -> Vec3 {
     let stretched = Vec3::new(alpha * wo.x, alpha * wo.y, wo.z).normalize_or_zero();
     let length_sq = stretched.x * stretched.x + stretched.y * stretched.y;

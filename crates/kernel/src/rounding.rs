@@ -76,7 +76,7 @@ pub fn triangle_slack(edge1: Vec3, edge2: Vec3) -> f32 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::Rules;
     use crate::intersect::{intersect_sphere, intersect_square};
@@ -84,12 +84,13 @@ mod tests {
     use crate::rng::random4;
     use crate::watertight::{Shear, intersect_watertight};
 
-    fn vector(k: u32, what: u32) -> Vec3 {
+    /// A vector of up to half a unit each way.
+    pub(crate) fn vector(k: u32, what: u32) -> Vec3 {
         let [x, y, z, _] = random4(k, what, 0, 91);
         Vec3::new(x, y, z) - 0.5
     }
 
-    fn ray(origin: Vec3, direction: Vec3) -> Ray {
+    pub(crate) fn ray(origin: Vec3, direction: Vec3) -> Ray {
         Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, inside: false }
     }
 

@@ -21,34 +21,42 @@ pub struct Shear {
 
 impl Shear {
     /// That of a direction, of any length.
+    #[inline]
     pub fn new(direction: Vec3) -> Self {
-        let last = longest_axis(direction);
-        let axes = [(last + 1) % 3, (last + 2) % 3, last];
-        let scale = 1.0 / direction[last];
-        Self { axes, slope: [direction[axes[0]] * scale, direction[axes[1]] * scale], scale }
+        let axes = TURNED[longest_axis(direction) % 4];
+        let along = picked(direction, axes);
+        let scale = 1.0 / along.z;
+        Self { axes, slope: [along.x * scale, along.y * scale], scale }
     }
 
     /// A vector's components in turned order.
+    #[inline]
     pub fn turned(&self, v: Vec3) -> Vec3 {
-        Vec3::from(self.axes.map(|axis| v[axis]))
+        picked(v, self.axes)
     }
+}
+
+/// The axes in turned order, by the last; a fourth so that there is nothing to check.
+const TURNED: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
+
+/// Components of a vector.
+#[inline]
+fn picked(v: Vec3, axes: [usize; 3]) -> Vec3 {
+    let v = [v.x, v.y, v.z, 0.0];
+    Vec3::from(axes.map(|axis| v[axis % 4]))
 }
 
 /// The axis along which a direction is longest; of equal ones the first.
-pub fn longest_axis(direction: Vec3) -> usize {
+#[inline]
+fn longest_axis(direction: Vec3) -> usize {
     let [x, y, z] = direction.abs().to_array();
-    if x >= y && x >= z {
-        0
-    } else if y >= z {
-        1
-    } else {
-        2
-    }
+    // Without branches, which nothing foretells.
+    usize::from(x < y.max(z)) * (2 - usize::from(y >= z))
 }
 
 /// A triangle by its corners, from either side; its plane is the more exact the shorter the edges at the first corner are.
-/// `shear` is that of the ray's direction. Arithmetic in the order of the
-/// formulas, no fma: else edges would have other signs from either side, and devices other bits.
+/// `shear` is that of the ray's direction. Arithmetic in the order of the formulas, no fma: else edges would have other
+/// signs from either side, and devices other bits.
 pub fn intersect_watertight(corners: &[Vec3; 3], primitive: u32, ray: &Ray, shear: &Shear) -> Option<Hit> {
     let corners = corners.map(|corner| shear.turned(corner));
     let [a, b, c] = corners.map(|corner| corner - shear.turned(ray.origin));
@@ -76,15 +84,7 @@ mod tests {
     use super::*;
     use crate::rng::random4;
     use crate::rounding::UNIT;
-
-    fn vector(k: u32, what: u32) -> Vec3 {
-        let [x, y, z, _] = random4(k, what, 0, 93);
-        Vec3::new(x, y, z) - 0.5
-    }
-
-    fn ray(origin: Vec3, direction: Vec3) -> Ray {
-        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, inside: false }
-    }
+    use crate::rounding::tests::{ray, vector};
 
     fn hit(corners: &[Vec3; 3], ray: &Ray) -> Option<Hit> {
         intersect_watertight(corners, 0, ray, &Shear::new(ray.direction))

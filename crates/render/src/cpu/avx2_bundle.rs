@@ -10,7 +10,7 @@ use super::avx2_packet::{Packet, meet, meet_any, sphere_from};
 use super::avx2_trace::{
     Wide3, WideRay, any_hit, block, closest_hit, lanes, load, nearer_hit, other_hit, splat3, spread, store,
 };
-use super::avx2_watertight::{WideShear, cross_watertight};
+use super::avx2_watertight::{WideShear, hit_watertight};
 use super::half_spaces::FEW;
 use super::stack::Stack;
 use super::tracer::Tracer;
@@ -73,7 +73,7 @@ impl<'a, const CORNERS: bool> Bundle<'a, CORNERS> {
             backwards[axis] = usize::from(signs != 0);
         }
         let (shear, turned) = if CORNERS {
-            let shear = WideShear::of_some(&packet.direction, asked)?;
+            let shear = WideShear::of_some(&packet.direction, asked);
             (shear, [shear.turned(&packet.origin), shear.turned(&packet.direction)])
         } else {
             (WideShear::none(), [packet.origin, packet.direction])
@@ -91,17 +91,19 @@ impl<'a, const CORNERS: bool> Bundle<'a, CORNERS> {
         Some(Self { packet, shear, turned, asked, reciprocal, backwards, origin, slope, t_min })
     }
 
-    /// The triangle of a lane: rays that hit it, with t, u and v; with corners only of those that were asked for.
+    /// The triangle of a lane: rays that hit it, with t, u and v; with corners only of those that were asked for. With `ANY`
+    /// only the rays count: the other values may be missing.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    fn intersect(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
+    fn intersect<const ANY: bool>(&self, block: &TriangleBlock, lane: usize, least: f32) -> (__m256, [__m256; 3]) {
         if !CORNERS {
             return self.packet.intersect(block, lane, least);
         }
         let splat = |of: &[[f32; LANES]; 3]| self.shear.splat_lane(of, lane);
         let corners = [splat(&block.a), splat(&block.b), splat(&block.c)];
-        let (inside, [t, u, v]) = cross_watertight(self.turned[0], self.turned[1], &self.shear, &corners);
-        (_mm256_and_ps(_mm256_and_ps(inside, spread(self.asked)), self.packet.between_ends(t)), [t, u, v])
+        let (rays, ends) = ((self.turned[0], self.turned[1]), (self.packet.t_min, self.packet.t_max));
+        let (hit, values) = hit_watertight::<ANY>(rays, &self.shear, ends, &corners);
+        (_mm256_and_ps(hit, spread(self.asked)), values)
     }
 
     /// Children that any of the rays may cross before `limit`, and the earliest that one may enter them.
@@ -151,7 +153,7 @@ impl<'a, const CORNERS: bool> Bundle<'a, CORNERS> {
                     let count = block.primitive.iter().filter(|&&primitive| primitive != NONE).count();
                     if (active.count_ones() as usize) < count {
                         let is_hit = |&lane: &usize| {
-                            WideRay::<CORNERS>::new(&self.packet.ray(lane)).intersect(block, least).0 != 0
+                            WideRay::<CORNERS>::new(&self.packet.ray(lane)).intersect::<true>(block, least).0 != 0
                         };
                         open &= !lanes(active).filter(is_hit).fold(0, |hits, lane| hits | 1 << lane);
                         continue;
@@ -160,7 +162,7 @@ impl<'a, const CORNERS: bool> Bundle<'a, CORNERS> {
                         if active == 0 {
                             break;
                         }
-                        let hit = _mm256_movemask_ps(self.intersect(block, lane, least).0) as u32 & active;
+                        let hit = _mm256_movemask_ps(self.intersect::<true>(block, lane, least).0) as u32 & active;
                         active &= !hit;
                         open &= !hit;
                     }
@@ -227,7 +229,7 @@ impl<'a, const CORNERS: bool> Bundle<'a, CORNERS> {
             ChildRef::Triangles(index) => {
                 let block = &geometry.triangles[index as usize];
                 for lane in (0..LANES).take_while(|&lane| block.primitive[lane] != NONE) {
-                    let (hit, values) = self.intersect(block, lane, min_determinant(rules));
+                    let (hit, values) = self.intersect::<false>(block, lane, min_determinant(rules));
                     best.take_nearer(hit, values, block.primitive[lane]);
                 }
             }

@@ -17,7 +17,7 @@ use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square};
 use lightcuts_kernel::ray::{END_SLACK, ORIGINAL_EPSILON, Ray, SLAB_SLACK};
-use lightcuts_world::bvh::{Geometry, LANES, TriangleBlock, TriangleForm};
+use lightcuts_world::bvh::{Geometry, LANES, TriangleBlock};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NEQ_OQ, _mm256_add_ps, _mm256_and_ps,
     _mm256_andnot_ps, _mm256_blendv_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
@@ -72,11 +72,7 @@ pub(super) fn any_hits<const CORNERS: bool>(tracer: &Tracer<'_>, packet: &Packet
 /// Twin of `Tracer::occluded8` for rays that are not inside of anything and have no end behind their origin.
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn occluded(tracer: &Tracer<'_>, rays: &[Ray; LANES], asked: u32) -> u32 {
-    let packet = Packet::new(rays);
-    match tracer.geometry.form {
-        TriangleForm::Edges => any_hits::<false>(tracer, &packet, asked),
-        TriangleForm::Corners => any_hits::<true>(tracer, &packet, asked),
-    }
+    by_form!(tracer.geometry.form, CORNERS => any_hits::<CORNERS>(tracer, &Packet::new(rays), asked))
 }
 
 // Written out: with `map`, over arrays of registers, the compiler has been seen to misplace them on the stack.
@@ -93,10 +89,7 @@ pub(super) fn occluded_lanes(tracer: &Tracer<'_>, rays: &RayLanes, asked: u32) -
     let load3 = |of: &[[f32; LANES]; 3]| [load(&of[0]), load(&of[1]), load(&of[2])];
     let (origin, direction) = (load3(&rays.origin), load3(&rays.direction));
     let packet = Packet { origin, direction, t_min: _mm256_setzero_ps(), t_max: load(&rays.t_max) };
-    match tracer.geometry.form {
-        TriangleForm::Edges => any_hits::<false>(tracer, &packet, asked),
-        TriangleForm::Corners => any_hits::<true>(tracer, &packet, asked),
-    }
+    by_form!(tracer.geometry.form, CORNERS => any_hits::<CORNERS>(tracer, &packet, asked))
 }
 
 /// Twin of `kernel::ray::safe_reciprocal`.

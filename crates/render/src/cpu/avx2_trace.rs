@@ -6,12 +6,14 @@
 
 #![allow(unsafe_code)]
 
-use super::avx2_watertight::{WideShear, cross_watertight};
+use super::avx2_watertight::{WideShear, hit_watertight};
 use super::stack::Stack;
+use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{intersect_sphere, intersect_square, min_determinant};
 use lightcuts_kernel::ray::{END_SLACK, Hit, Ray, SLAB_SLACK, safe_reciprocal};
 use lightcuts_kernel::rounding::UNIT;
+use lightcuts_kernel::watertight::Shear;
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, MAX_LEVELS, STACK_SIZE, TriangleBlock};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NLT_UQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_ps,
@@ -45,7 +47,7 @@ pub(super) fn load3(lanes: &[[f32; LANES]; 3]) -> Wide3 {
 }
 
 #[target_feature(enable = "avx2")]
-pub(super) fn splat3(v: glam::Vec3) -> Wide3 {
+pub(super) fn splat3(v: Vec3) -> Wide3 {
     [_mm256_set1_ps(v.x), _mm256_set1_ps(v.y), _mm256_set1_ps(v.z)]
 }
 
@@ -167,44 +169,50 @@ impl BoxRay {
     }
 }
 
-/// A ray in all lanes, to meet triangles: `CORNERS` says that blocks hold these, else edges.
+/// A ray to meet triangles in blocks: `CORNERS` says that these hold corners, else edges.
 pub(super) struct WideRay<const CORNERS: bool> {
     /// In the order of the shear's axes if there are corners, likewise the direction.
-    origin: Wide3,
-    direction: Wide3,
-    shear: WideShear,
-    t_min: __m256,
-    t_max: __m256,
+    origin: Vec3,
+    direction: Vec3,
+    shear: Shear,
+    t_min: f32,
+    t_max: f32,
 }
 
 impl<const CORNERS: bool> WideRay<CORNERS> {
-    #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
+    #[inline]
     pub(super) fn new(ray: &Ray) -> Self {
-        let shear = if CORNERS { WideShear::of_one(ray.direction) } else { WideShear::none() };
-        let turned = |v: Wide3| if CORNERS { shear.turned(&v) } else { v };
-        Self {
-            origin: turned(splat3(ray.origin)),
-            direction: turned(splat3(ray.direction)),
-            shear,
-            t_min: _mm256_set1_ps(ray.t_min),
-            t_max: _mm256_set1_ps(ray.t_max),
+        let Ray { origin, direction, t_min, t_max, .. } = *ray;
+        if !CORNERS {
+            return Self {
+                origin,
+                direction,
+                shear: Shear { axes: [0, 1, 2], slope: [0.0; 2], scale: 0.0 },
+                t_min,
+                t_max,
+            };
         }
+        let shear = Shear::new(direction);
+        Self { origin: shear.turned(origin), direction: shear.turned(direction), shear, t_min, t_max }
     }
 
     /// Lanes of a block that the ray hits, with t, u and v; the arithmetic of `intersect_triangle` or, with corners, of
-    /// `intersect_watertight`.
+    /// `intersect_watertight`. With `ANY` only the lanes count: the other values may be missing.
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     #[inline]
-    pub(super) fn intersect(&self, block: &TriangleBlock, min_determinant: f32) -> (u32, [__m256; 3]) {
-        let (inside, [t, u, v]) = if CORNERS {
-            let triangles = [self.shear.load3(&block.a), self.shear.load3(&block.b), self.shear.load3(&block.c)];
-            cross_watertight(self.origin, self.direction, &self.shear, &triangles)
-        } else {
-            let triangles = [load3(&block.a), load3(&block.b), load3(&block.c)];
-            cross_triangles(self.origin, self.direction, triangles, min_determinant)
-        };
-        let after = _mm256_cmp_ps::<_CMP_GT_OQ>(t, self.t_min);
-        let before = _mm256_cmp_ps::<_CMP_LT_OQ>(t, self.t_max);
+    pub(super) fn intersect<const ANY: bool>(&self, block: &TriangleBlock, min_determinant: f32) -> (u32, [__m256; 3]) {
+        let (origin, direction) = (splat3(self.origin), splat3(self.direction));
+        let ends = (_mm256_set1_ps(self.t_min), _mm256_set1_ps(self.t_max));
+        if CORNERS {
+            let shear = WideShear::of_one(&self.shear);
+            let triangles = [shear.load3(&block.a), shear.load3(&block.b), shear.load3(&block.c)];
+            let (hit, values) = hit_watertight::<ANY>((origin, direction), &shear, ends, &triangles);
+            return (_mm256_movemask_ps(hit) as u32, values);
+        }
+        let triangles = [load3(&block.a), load3(&block.b), load3(&block.c)];
+        let (inside, [t, u, v]) = cross_triangles(origin, direction, triangles, min_determinant);
+        let after = _mm256_cmp_ps::<_CMP_GT_OQ>(t, ends.0);
+        let before = _mm256_cmp_ps::<_CMP_LT_OQ>(t, ends.1);
         let hit = _mm256_and_ps(inside, _mm256_and_ps(after, before));
         (_mm256_movemask_ps(hit) as u32, [t, u, v])
     }
@@ -246,14 +254,16 @@ pub(super) fn any_hit<const OTHERS: bool, const CORNERS: bool>(
     under: u32,
 ) -> bool {
     let Some(mut node) = geometry.nodes.get(under as usize) else { return false };
-    let (boxes, wide) = (BoxRay::new(ray), WideRay::<CORNERS>::new(ray));
-    let least = min_determinant(rules);
+    let boxes = BoxRay::new(ray);
+    // Many rays meet no triangle.
+    let mut wide = None;
+    let (limit, least) = (_mm256_set1_ps(ray.t_max), min_determinant(rules));
     // One entry per level: a node and those of its inner children that are still to be visited.
     let mut stack = Stack::<(u32, u32), MAX_LEVELS>::new();
     let mut index = under;
     loop {
         let here = node;
-        let mask = boxes.enter(here, wide.t_max).0;
+        let mask = boxes.enter(here, limit).0;
         let mut inner = mask & !(here.triangles | here.others);
         // The next node before the leaves of this one: the processor can fetch it meanwhile.
         let mut is_last = false;
@@ -276,7 +286,8 @@ pub(super) fn any_hit<const OTHERS: bool, const CORNERS: bool>(
             node = &geometry.nodes[index as usize];
         }
         for lane in lanes(mask & here.triangles) {
-            if wide.intersect(block(geometry, here, lane), least).0 != 0 {
+            let wide = wide.get_or_insert_with(|| WideRay::<CORNERS>::new(ray));
+            if wide.intersect::<true>(block(geometry, here, lane), least).0 != 0 {
                 return true;
             }
         }
@@ -323,7 +334,7 @@ pub(super) fn nearer_hit<const CORNERS: bool>(
         let (mask, entry) = boxes.enter(node, _mm256_set1_ps(best.t));
         for lane in lanes(mask & node.triangles) {
             let block = block(geometry, node, lane);
-            let (mask, values) = wide.intersect(block, least);
+            let (mask, values) = wide.intersect::<false>(block, least);
             if mask != 0 {
                 let [t, u, v] = [store(values[0]), store(values[1]), store(values[2])];
                 for lane in lanes(mask) {

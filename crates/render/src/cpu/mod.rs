@@ -3,6 +3,24 @@
 //! The plain functions of `lightcuts-kernel` say what is meant; the AVX2 versions replace them bit for bit and are
 //! tested against them.
 
+/// A value whose code is made for each form of triangles: what stands behind the arrow, where the constant of that name
+/// says whether triangles are held by their corners.
+#[cfg(target_arch = "x86_64")]
+macro_rules! by_form {
+    ($form:expr, $corners:ident => $value:expr) => {
+        match $form {
+            lightcuts_world::bvh::TriangleForm::Edges => {
+                const $corners: bool = false;
+                $value
+            }
+            lightcuts_world::bvh::TriangleForm::Corners => {
+                const $corners: bool = true;
+                $value
+            }
+        }
+    };
+}
+
 #[cfg(target_arch = "x86_64")]
 mod avx2_bundle;
 #[cfg(target_arch = "x86_64")]

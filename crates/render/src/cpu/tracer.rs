@@ -4,7 +4,7 @@ use super::Simd;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::ray::{Hit, Ray};
-use lightcuts_world::bvh::{BvhNode, Geometry, LANES, TriangleForm, any_hit, closest_hit};
+use lightcuts_world::bvh::{BvhNode, Geometry, LANES, any_hit, closest_hit};
 
 /// Traces rays through a geometry by the best means that the machine has. Hits are those of the kernel's plain
 /// functions, bit for bit, whatever the means.
@@ -46,10 +46,7 @@ impl<'a> Tracer<'a> {
         if self.avx2 {
             // SAFETY: `avx2` is set only where the machine has the features.
             return unsafe {
-                match self.geometry.form {
-                    TriangleForm::Edges => super::avx2_trace::closest_hit::<false>(&self.geometry, ray, self.rules),
-                    TriangleForm::Corners => super::avx2_trace::closest_hit::<true>(&self.geometry, ray, self.rules),
-                }
+                by_form!(self.geometry.form, CORNERS => super::avx2_trace::closest_hit::<CORNERS>(&self.geometry, ray, self.rules))
             };
         }
         closest_hit(&self.geometry, ray, self.rules)
@@ -62,14 +59,9 @@ impl<'a> Tracer<'a> {
         if self.avx2 {
             // SAFETY: `avx2` is set only where the machine has the features.
             return unsafe {
-                match self.geometry.form {
-                    TriangleForm::Edges => {
-                        super::avx2_trace::any_hit::<true, false>(&self.geometry, ray, self.rules, 0)
-                    }
-                    TriangleForm::Corners => {
-                        super::avx2_trace::any_hit::<true, true>(&self.geometry, ray, self.rules, 0)
-                    }
-                }
+                by_form!(self.geometry.form, CORNERS => {
+                    super::avx2_trace::any_hit::<true, CORNERS>(&self.geometry, ray, self.rules, 0)
+                })
             };
         }
         any_hit(&self.geometry, ray, self.rules)
@@ -83,10 +75,7 @@ impl<'a> Tracer<'a> {
         if self.avx2 {
             // SAFETY: `avx2` is set only where the machine has the features.
             return unsafe {
-                match self.geometry.form {
-                    TriangleForm::Edges => super::avx2_bundle::closest_hits::<false>(self, rays),
-                    TriangleForm::Corners => super::avx2_bundle::closest_hits::<true>(self, rays),
-                }
+                by_form!(self.geometry.form, CORNERS => super::avx2_bundle::closest_hits::<CORNERS>(self, rays))
             };
         }
         rays.map(|ray| self.closest(&ray))
