@@ -63,6 +63,9 @@ pub(crate) struct Builder {
     pub(crate) points: Vec<[Vec3; 3]>,
     pub(crate) spheres: Vec<Sphere>,
     pub(crate) squares: Vec<Square>,
+    /// First triangle of each mesh, and the greatest coordinate that corners from there on were given with, in scene
+    /// units: what they are rounded relative to. Empty if nobody asks for it.
+    pub(crate) given: Vec<(usize, f64)>,
     pub(crate) objects: u32,
 }
 

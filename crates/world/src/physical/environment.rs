@@ -20,7 +20,8 @@ pub struct StoredEnvironment {
 }
 
 impl StoredEnvironment {
-    pub(super) fn new(desc: &EnvironmentDesc, images: &[PixelImage]) -> Self {
+    /// `None` where no light comes from it: a share of all samples would go there for nothing.
+    pub(super) fn new(desc: &EnvironmentDesc, images: &[PixelImage]) -> Option<Self> {
         let image = desc.image.map(|image| &images[image.0 as usize]);
         let (width, height) = image.map_or(PLAIN_SIZE, |image| (image.width, image.height));
         let pixels = image.map_or_else(|| vec![[1.0; 3]; (width * height) as usize], radiances);
@@ -37,7 +38,7 @@ impl StoredEnvironment {
         let mut of_rows = Vec::with_capacity(rows.len() + 1);
         push_sums(&rows, &mut of_rows);
         let mean = mean(&pixels, width as usize, height as usize) * desc.radiance;
-        Self { record, pixels, rows: of_rows, columns, mean }
+        (mean != Vec3::ZERO).then_some(Self { record, pixels, rows: of_rows, columns, mean })
     }
 
     /// For the kernel.

@@ -27,6 +27,7 @@ use lightcuts_kernel::lens::Lens;
 use lightcuts_kernel::mip::MipImage;
 use lightcuts_kernel::ray::{NONE, normalize_or_zero};
 use lightcuts_kernel::scatter::{Images, Scatter};
+use lightcuts_scene::MeshDesc;
 use lightcuts_scene::physical::{PhysicalCamera, PhysicalScene, PhysicalShape, SurfaceId, View};
 
 /// Everything that rendering with the physical model reads, as flat slices. Immutable once made.
@@ -99,7 +100,7 @@ impl PhysicalWorld {
             textured: (0..scatters.len()).map(|index| scatters::is_textured(&scatters, index)).collect(),
             scatters,
             tables,
-            environment: scene.environment.as_ref().map(|of| StoredEnvironment::new(of, &scene.images)),
+            environment: scene.environment.as_ref().and_then(|of| StoredEnvironment::new(of, &scene.images)),
             images,
             words,
             placed_emitters: lights.placed as u32,
@@ -194,6 +195,8 @@ impl PhysicalWorld {
 
 fn add_objects(scene: &PhysicalScene, origin: DVec3) -> Builder {
     let mut builder = Builder::default();
+    let greatest = |mesh: &MeshDesc| mesh.positions.iter().fold(Vec3::ZERO, |greatest, p| greatest.max(p.abs()));
+    let greatest: Vec<f64> = scene.meshes.iter().map(|mesh| f64::from(greatest(mesh).max_element())).collect();
     for object in &scene.objects {
         builder.begin_object();
         let material = object.material.0;
@@ -207,6 +210,11 @@ fn add_objects(scene: &PhysicalScene, origin: DVec3) -> Builder {
             }
             PhysicalShape::Mesh { mesh, placement, smooth, override_material } => {
                 let of_face = |own: Option<SurfaceId>| own.filter(|_| !override_material).map_or(material, |own| own.0);
+                // Errors of all coordinates may add up along an axis.
+                let rows = placement.matrix3.transpose();
+                let growth = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.abs().element_sum());
+                let given = greatest[mesh.0 as usize] * growth.into_iter().fold(0.0, f64::max);
+                builder.given.push((builder.corners.len(), given));
                 let placement = AffinePlacement::new(DAffine3::from_translation(-origin) * placement);
                 builder.add_mesh(&scene.meshes[mesh.0 as usize], &placement, smooth, of_face);
             }

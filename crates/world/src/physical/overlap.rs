@@ -10,7 +10,8 @@ use lightcuts_kernel::intersect::Square;
 use lightcuts_kernel::rounding::UNIT;
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
-/// How far borders reach, in roundings of their greatest coordinate or size: more than the errors of their corners.
+/// How far borders reach, in roundings of their greatest coordinate or size, as they are or as they were given: more than
+/// the errors of their corners, those of text of seven digits too.
 const CORNER_ERRORS: f64 = 32.0;
 
 /// The same in roundings of the scene's extent: from so far away rays miss edges by as much.
@@ -30,13 +31,32 @@ pub(super) struct Outlines {
     /// Corners of the triangles, in file order.
     pub(super) points: Vec<[Vec3; 3]>,
     pub(super) squares: Vec<Square>,
+    /// As in the builder.
+    given: Vec<(usize, f64)>,
+    /// The greatest coordinate of them all.
+    pub(super) greatest_given: f64,
+}
+
+impl Outlines {
+    /// The greatest coordinate that the corners of a triangle's mesh were given with, in scene units.
+    pub(super) fn given(&self, triangle: usize) -> f64 {
+        given(&self.given, triangle)
+    }
+}
+
+fn given(of_meshes: &[(usize, f64)], triangle: usize) -> f64 {
+    let next = of_meshes.partition_point(|(first, _)| *first <= triangle);
+    next.checked_sub(1).map_or(0.0, |mesh| of_meshes[mesh].1)
 }
 
 /// Makes primitives reach beyond their borders; `extent` is the diagonal of the scene. Gives what they were.
 pub(super) fn overlap(builder: &mut Builder, extent: f32) -> Outlines {
-    let outlines = Outlines { points: builder.points.clone(), squares: builder.squares.clone() };
+    let (points, squares) = (builder.points.clone(), builder.squares.clone());
+    let given = std::mem::take(&mut builder.given);
+    let greatest_given = given.iter().map(|(_, given)| *given).fold(0.0, f64::max);
+    let outlines = Outlines { points, squares, given, greatest_given };
     let extent = f64::from(extent);
-    move_borders(&mut builder.points, extent);
+    move_borders(&mut builder.points, &outlines.given, extent);
     for square in &mut builder.squares {
         let size = square.half_width.min(square.half_height);
         let coordinate = square.center.abs().max_element().max(square.half_width).max(square.half_height);
@@ -81,8 +101,8 @@ impl Pull {
     }
 }
 
-/// Moves the corners of all edges that belong to one triangle alone.
-fn move_borders(points: &mut [[Vec3; 3]], extent: f64) {
+/// Moves the corners of all edges that belong to one triangle alone; `of_meshes` is the builder's `given`.
+fn move_borders(points: &mut [[Vec3; 3]], of_meshes: &[(usize, f64)], extent: f64) {
     let (names, places) = named(points);
     let borders = borders(&names);
     if borders.is_empty() {
@@ -96,6 +116,7 @@ fn move_borders(points: &mut [[Vec3; 3]], extent: f64) {
         let height = outward.dot(a - c);
         let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let coordinate = [a, b, c].iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let coordinate = coordinate.max(given(of_meshes, triangle));
         let length = overlap_of(coordinate, size, extent).min(height * MOST_OF_HEIGHT);
         for k in [from, (from + 1) % 3] {
             pulls[names[triangle][k] as usize].add(outward, length);
@@ -167,7 +188,7 @@ mod tests {
             let (right, up) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.8, 0.6, 0.0) * 0.5);
             let plain = grid(across, down, |u, v| right * u + up * v);
             let mut moved = plain.clone();
-            move_borders(&mut moved, 4.0);
+            move_borders(&mut moved, &[], 4.0);
             let mut at_border = 0;
             for (plain, moved) in plain.as_flattened().iter().zip(moved.as_flattened()) {
                 let inside = |p: Vec3| {
@@ -197,10 +218,10 @@ mod tests {
         let [a, b, c, d] = corners;
         let closed = vec![[a, b, c], [b, a, d], [d, c, b], [c, d, a]];
         let mut moved = closed.clone();
-        move_borders(&mut moved, 10.0);
+        move_borders(&mut moved, &[], 10.0);
         assert_eq!(closed, moved);
         let mut open = closed[1..].to_vec();
-        move_borders(&mut open, 10.0);
+        move_borders(&mut open, &[], 10.0);
         assert!(open.as_flattened().iter().zip(closed[1..].as_flattened()).any(|(a, b)| a != b));
         // What was in one place still is.
         let (names, places) = named(&open);
@@ -216,16 +237,16 @@ mod tests {
             let plain = [vector(k, 0), vector(k, 0) + vector(k, 1) * 10.0_f32.powf(-3.0 * narrow), vector(k, 2)]
                 .map(|p| p + place);
             let mut moved = [plain];
-            move_borders(&mut moved, 2.0);
+            move_borders(&mut moved, &[], 2.0);
             let [plain, moved] = [plain, moved[0]].map(|of| of.map(Vec3::as_dvec3));
             for from in 0..3 {
                 let [a, b, c] = [from, (from + 1) % 3, (from + 2) % 3].map(|j| plain[j]);
                 let outward = (b - a).cross((b - a).cross(c - a)).normalize_or_zero();
                 let height = outward.dot(a - c);
-                let rounding = 2.0 * f64::from(UNIT) * place.abs().max_element() as f64;
+                let rounding = 2.0 * f64::from(UNIT) * f64::from(place.abs().max_element() + 1.0);
                 for j in [from, (from + 1) % 3] {
                     let way = outward.dot(moved[j] - plain[j]);
-                    assert!(way > -rounding && way < 2.0 * MOST_OF_HEIGHT * height.max(1.0) + rounding, "{k}: {way}");
+                    assert!(way > -rounding && way < MOST_OF_EDGES * MOST_OF_HEIGHT * height + rounding, "{k}: {way}");
                 }
             }
         }

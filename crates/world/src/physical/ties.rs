@@ -19,6 +19,10 @@ const RELATIVE_DISTANCE: f64 = 1e-5;
 /// The same in roundings of coordinates.
 const ROUNDINGS: f64 = 8.0 * UNIT as f64;
 
+/// The same in roundings of the coordinates that a mesh was given with: seven digits of text may be wrong by as much as
+/// eight of them, on either side.
+const ROUNDINGS_GIVEN: f64 = 20.0 * UNIT as f64;
+
 /// Share of the smaller surface that must be in both: neighbours share no more than rounding makes of an edge.
 const LEAST_SHARE: f64 = 1e-4;
 
@@ -77,9 +81,10 @@ impl Ties {
         for form in forms {
             visit(shapes, outlines, &form, |other| {
                 let (mine, others) = (form.tied, other.tied);
-                if others.primitive != mine.primitive && form.is_in_place_of(&other) {
-                    pairs.push((mine.primitive, others, form.tolerance));
-                    pairs.push((others.primitive, mine, form.tolerance));
+                let tolerance = form.tolerance(other.error);
+                if others.primitive != mine.primitive && form.is_in_place_of(&other, tolerance) {
+                    pairs.push((mine.primitive, others, tolerance));
+                    pairs.push((others.primitive, mine, tolerance));
                 }
             });
         }
@@ -129,8 +134,11 @@ struct Form {
     outline: Outline,
     /// Unit normal of its plane; zero of a sphere and of what has no area.
     normal: DVec3,
-    tolerance: f64,
-    bounds: (Vec3, Vec3),
+    /// How far others may be off whose coordinates are exact, but for its own errors.
+    distance: f64,
+    /// How far rounding may have moved it, or another one with the same coordinates.
+    error: f64,
+    bounds: (DVec3, DVec3),
 }
 
 enum Outline {
@@ -155,7 +163,9 @@ impl Form {
     fn triangle(shapes: &Shapes, outlines: &Outlines, block: &TriangleBlock, lane: usize) -> Self {
         let primitive = block.primitive[lane];
         let points = &outlines.points[shapes.primitives[primitive as usize].index as usize];
-        Self::flat(Tied { primitive, corners: block.lane(lane) }, Outline::Triangle(points.map(Vec3::as_dvec3)))
+        let given = outlines.given(shapes.primitives[primitive as usize].index as usize);
+        let tied = Tied { primitive, corners: block.lane(lane) };
+        Self::flat(tied, Outline::Triangle(points.map(Vec3::as_dvec3)), given)
     }
 
     fn square(square: &Square) -> Self {
@@ -163,36 +173,46 @@ impl Form {
         let (across, along) = (across * f64::from(square.half_width), along * f64::from(square.half_height));
         let corners =
             [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(u, v)| center + across * u + along * v);
-        Self::flat(Tied { primitive: square.primitive, corners: NO_CORNERS }, Outline::Square(corners))
+        Self::flat(Tied { primitive: square.primitive, corners: NO_CORNERS }, Outline::Square(corners), 0.0)
     }
 
-    fn flat(tied: Tied, outline: Outline) -> Self {
+    fn flat(tied: Tied, outline: Outline, given: f64) -> Self {
         let corners = outline.corners();
         let lower = corners.iter().copied().reduce(DVec3::min).unwrap_or_default();
         let upper = corners.iter().copied().reduce(DVec3::max).unwrap_or_default();
         let coordinate = lower.abs().max(upper.abs()).max_element();
-        let tolerance = (upper - lower).length() * RELATIVE_DISTANCE + coordinate * ROUNDINGS;
-        let bounds = ((lower - tolerance).as_vec3(), (upper + tolerance).as_vec3());
+        let distance = (upper - lower).length() * RELATIVE_DISTANCE;
+        let error = (coordinate * ROUNDINGS).max(given * ROUNDINGS_GIVEN);
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-        Self { tied, outline, normal, tolerance, bounds }
+        Self { tied, outline, normal, distance, error, bounds: (lower, upper) }
     }
 
     fn sphere(sphere: &Sphere) -> Self {
         let coordinate = f64::from(sphere.center.abs().max_element() + sphere.radius);
-        let tolerance = f64::from(sphere.radius) * RELATIVE_DISTANCE + coordinate * ROUNDINGS;
-        let bounds = (sphere.center - sphere.radius, sphere.center + sphere.radius);
+        let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
         Self {
             tied: Tied { primitive: sphere.primitive, corners: NO_CORNERS },
             outline: Outline::Sphere(*sphere),
             normal: DVec3::ZERO,
-            tolerance,
-            bounds,
+            distance: radius * RELATIVE_DISTANCE,
+            error: coordinate * ROUNDINGS,
+            bounds: (center - radius, center + radius),
         }
+    }
+
+    /// How far this and another one may be apart to be in one place, by how far rounding may have moved the other.
+    fn tolerance(&self, error: f64) -> f64 {
+        self.distance + self.error.max(error)
+    }
+
+    /// A box around what may be in this one's place.
+    fn reach(&self, tolerance: f64) -> (Vec3, Vec3) {
+        ((self.bounds.0 - tolerance).as_vec3(), (self.bounds.1 + tolerance).as_vec3())
     }
 
     /// Whether a triangle may lie in the place of this form: finds most of those that do not, before a form is made of
     /// them.
-    fn may_hold(&self, triangle: [Vec3; 3]) -> bool {
+    fn may_hold(&self, triangle: [Vec3; 3], tolerance: f64) -> bool {
         let Some(&corner) = self.outline.corners().first() else { return false };
         let [a, b, c] = triangle.map(Vec3::as_dvec3);
         let cross = (b - a).cross(c - a);
@@ -200,21 +220,21 @@ impl Form {
             return false;
         }
         let heights = [a, b, c].map(|p| self.normal.dot(p - corner));
-        let far = 2.0 * self.tolerance;
+        let far = 2.0 * tolerance;
         heights.iter().any(|height| *height <= far) && heights.iter().any(|height| *height >= -far)
     }
 
     /// Whether a part of this surface lies in another one.
-    fn is_in_place_of(&self, other: &Self) -> bool {
+    fn is_in_place_of(&self, other: &Self, tolerance: f64) -> bool {
         match (&self.outline, &other.outline) {
             (Outline::Sphere(a), Outline::Sphere(b)) => {
                 let off = a.center.as_dvec3().distance(b.center.as_dvec3()) + f64::from((a.radius - b.radius).abs());
-                off <= self.tolerance
+                off <= tolerance
             }
             (Outline::Sphere(_), _) | (_, Outline::Sphere(_)) => false,
             (a, b) => {
                 let [a, b] = [(a.corners(), self.normal), (b.corners(), other.normal)];
-                meet(self.bounds, other.bounds) && are_in_one_place(a, b, self.tolerance)
+                meet(self.reach(tolerance), other.reach(0.0)) && are_in_one_place(a, b, tolerance)
             }
         }
     }
@@ -225,11 +245,13 @@ const NO_CORNERS: [Vec3; 3] = [Vec3::ZERO; 3];
 
 /// Visits all primitives whose boxes meet that of a form.
 fn visit(shapes: &Shapes, outlines: &Outlines, form: &Form, mut report: impl FnMut(Form)) {
+    let tolerance = form.tolerance(outlines.greatest_given * ROUNDINGS_GIVEN);
+    let reach = form.reach(tolerance);
     let mut open: Vec<u32> = if shapes.nodes.is_empty() { Vec::new() } else { vec![0] };
     while let Some(node) = open.pop() {
         let node = &shapes.nodes[node as usize];
         for lane in 0..LANES {
-            if !meet(node.child_box(lane), form.bounds) {
+            if !meet(node.child_box(lane), reach) {
                 continue;
             }
             match ChildRef::unpack(node.child[lane]) {
@@ -239,7 +261,7 @@ fn visit(shapes: &Shapes, outlines: &Outlines, form: &Form, mut report: impl FnM
                 ChildRef::Triangles(i) => {
                     let block = &shapes.triangles[i as usize];
                     (0..LANES)
-                        .filter(|&lane| block.primitive[lane] != NONE && form.may_hold(block.lane(lane)))
+                        .filter(|&lane| block.primitive[lane] != NONE && form.may_hold(block.lane(lane), tolerance))
                         .for_each(|lane| report(Form::triangle(shapes, outlines, block, lane)));
                 }
             }

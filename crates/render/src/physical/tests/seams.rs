@@ -117,6 +117,50 @@ fn cubes_have_no_seams() {
     }
 }
 
+/// Six sheets of different grids, in files of their own far from the origin of their coordinates, of 32 bits or of seven
+/// digits: together they are closed, to their edges and corners.
+#[test]
+fn sheets_given_far_from_their_origin_join() {
+    for (distance, digits) in [(0.0, 9), (80.0, 9), (80.0, 7), (1000.0, 7), (1e5, 9)] {
+        let turn = turn(33.3);
+        let place = DVec3::new(0.5, -0.7, 0.51) * distance;
+        let size = f64::max(0.2, 1e-3 * distance);
+        let meshes = (0..6).map(|side: usize| {
+            let [out, a, b] = [0, 1, 2].map(|step| Vec3::AXES[(side / 2 + step) % 3]);
+            let out = if side.is_multiple_of(2) { out } else { -out };
+            let mut mesh = MeshDesc::default();
+            sheet(&mut mesh, out - a - b, [a * 2.0, b * 2.0], [3 + side as u32, 9 - side as u32]);
+            for position in &mut mesh.positions {
+                let there = place + turn.transform_vector3(position.as_dvec3() * size);
+                let text = there.to_array().map(|c| format!("{c:.*e}", digits - 1));
+                *position = Vec3::from(text.map(|text| text.parse::<f32>().expect("a number")));
+            }
+            mesh
+        });
+        let scene = PhysicalScene {
+            objects: (0..6).map(|mesh| instance(mesh, DAffine3::IDENTITY, 0)).collect(),
+            materials: vec![diffuse(Vec3::ZERO)],
+            meshes: meshes.collect(),
+            ..PhysicalScene::default()
+        };
+        let world = PhysicalWorld::new(&scene).expect("the scene is sound");
+        let tracer = Tracer::new(world.shapes.geometry(), Rules::Repaired, Simd::Auto);
+        let there = |p: Vec3| (place + turn.transform_vector3(p.as_dvec3() * size) - world.origin).as_vec3();
+        for k in 0..100_000 {
+            let [x, y, z, which] = random4(k, 5, 0, 96);
+            let [a, b, c, _] = random4(k, 6, 0, 96);
+            let origin = there((Vec3::new(a, b, c) * 2.0 - 1.0) * 0.98);
+            let mut target = Vec3::new(x, y, z) * 2.0 - 1.0;
+            for axis in 0..[3, 2, 1][(which * 3.0) as usize % 3] {
+                target[axis] = target[axis].signum();
+            }
+            let direction = there(target) - origin;
+            let ray = Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, inside: false };
+            assert!(tracer.closest(&ray).is_some(), "{distance}, {digits}, {k}: {ray:?}");
+        }
+    }
+}
+
 /// A sun over strips, one over another only where it shines along them: all of its light comes back.
 #[test]
 fn strips_lose_no_light() {

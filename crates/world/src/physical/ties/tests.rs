@@ -101,3 +101,37 @@ fn shared_areas_are_those_of_geometry() {
         assert!((area(&clipped(&first, &second)) - shared).abs() < 1e-12, "{shift}, clockwise");
     }
 }
+
+/// A lamp flush with a ceiling, both meshes with their own grids, turned, with coordinates of 32 bits or of seven digits far
+/// from the origin of their file: each triangle of the lamp is tied to some of the ceiling.
+#[test]
+fn meshes_given_far_from_their_origin_are_tied() {
+    for k in 0..40 {
+        let distance = [30.0, 100.0, 1000.0, 1e5][k as usize % 4];
+        let digits = [9, 7][k as usize / 4 % 2];
+        let [x, y, z, angle] = random4(k, 1, 0, 92).map(f64::from);
+        let turn = glam::DQuat::from_axis_angle((DVec3::new(x, y, z) - 0.5).normalize(), 6.0 * angle);
+        let place = (DVec3::new(y, z, x) - 0.5).normalize() * distance;
+        let given = |mut mesh: MeshDesc, corner: DVec3, size: f64| {
+            for position in &mut mesh.positions {
+                let there = place + turn * (corner + position.as_dvec3() * size);
+                let text = there.to_array().map(|c| format!("{c:.*e}", digits - 1));
+                *position = Vec3::from(text.map(|text| text.parse::<f32>().expect("a number")));
+            }
+            mesh
+        };
+        let size = 0.02 * distance.max(100.0);
+        let ceiling = given(grid(3, |_, _| 0.0), DVec3::ZERO, size);
+        let lamp = given(grid(4, |_, _| 0.0), DVec3::new(0.3, 0.2, 0.0) * size, 0.4 * size);
+        let objects = [0, 1].map(|mesh| {
+            let placement = glam::DAffine3::IDENTITY;
+            let shape = PhysicalShape::Mesh { mesh: MeshId(mesh), placement, smooth: false, override_material: true };
+            object(shape, mesh)
+        });
+        let world = PhysicalWorld::new(&scene(vec![ceiling, lamp], objects.into())).expect("the scene is sound");
+        for primitive in 18..50 {
+            let tied = world.ties.of(primitive);
+            assert!(!tied.is_empty() && tied.iter().all(|tied| tied.primitive < 18), "{k}, {primitive}: {tied:?}");
+        }
+    }
+}
