@@ -40,10 +40,10 @@ impl Channel<'_> {
     /// Appends the samples of row `y` in the machine's byte order.
     pub(crate) fn append_row(&self, y: usize, bytes: &mut Vec<u8>) {
         match self.source {
-            Source::Component(image, c) => bytes.extend(image.row(y).iter().flat_map(|rgb| rgb[c].to_ne_bytes())),
-            Source::F32(plane) => bytes.extend(plane.row(y).iter().flat_map(|value| value.to_ne_bytes())),
-            Source::SmallIds(plane) => bytes.extend(plane.row(y).iter().flat_map(|id| (*id as f32).to_ne_bytes())),
-            Source::U32(plane) => bytes.extend(plane.row(y).iter().flat_map(|value| value.to_ne_bytes())),
+            Source::Component(image, c) => bytes.extend(image.row(y).iter().flat_map(|rgb| rgb[c].to_le_bytes())),
+            Source::F32(plane) => bytes.extend(plane.row(y).iter().flat_map(|value| value.to_le_bytes())),
+            Source::SmallIds(plane) => bytes.extend(plane.row(y).iter().flat_map(|id| (*id as f32).to_le_bytes())),
+            Source::U32(plane) => bytes.extend(plane.row(y).iter().flat_map(|value| value.to_le_bytes())),
         }
     }
 }
@@ -215,10 +215,10 @@ mod tests {
             id.append_row(0, &mut row);
             (id.kind(), row[4..].to_vec())
         };
-        assert_eq!(kinds(3), (SampleKind::F32, 3.0_f32.to_ne_bytes().to_vec()));
-        assert_eq!(kinds(1 << 24), (SampleKind::F32, 16_777_216.0_f32.to_ne_bytes().to_vec()));
+        assert_eq!(kinds(3), (SampleKind::F32, 3.0_f32.to_le_bytes().to_vec()));
+        assert_eq!(kinds(1 << 24), (SampleKind::F32, 16_777_216.0_f32.to_le_bytes().to_vec()));
         let beyond = (1 << 24) + 1;
-        assert_eq!(kinds(beyond), (SampleKind::U32, beyond.to_ne_bytes().to_vec()));
+        assert_eq!(kinds(beyond), (SampleKind::U32, beyond.to_le_bytes().to_vec()));
     }
 
     #[test]
