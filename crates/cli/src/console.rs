@@ -2,7 +2,8 @@
 
 use crate::exit::Failure;
 use indicatif::ProgressBar;
-use miette::{MietteDiagnostic, MietteHandlerOpts, Report, Severity};
+use lightcuts::ImportError;
+use miette::{Diagnostic, MietteDiagnostic, MietteHandlerOpts, Report, Severity};
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::sync::{Mutex, PoisonError};
 
@@ -60,7 +61,16 @@ pub(crate) fn warn(message: &str) {
     show(&Report::new(MietteDiagnostic::new(message).with_severity(Severity::Warning)));
 }
 
-/// Shows an error or a warning on standard error.
+/// Shows an error or a warning on standard error; of a scene with several errors each as one of its own.
 pub(crate) fn show(report: &Report) {
-    note(format!("{report:?}").trim_end());
+    let note_report = |report: &Report| note(format!("{report:?}").trim_end());
+    let Some(error) = report.downcast_ref::<ImportError>().filter(|error| !error.faults().is_empty()) else {
+        return note_report(report);
+    };
+    for fault in error.faults() {
+        note_report(&Report::new(fault.clone()));
+    }
+    if let Some(help) = error.help() {
+        note_report(&Report::new(MietteDiagnostic::new(help.to_string()).with_severity(Severity::Advice)));
+    }
 }

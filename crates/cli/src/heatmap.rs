@@ -14,12 +14,16 @@ const BEAUTY: &str = "beauty";
 /// Runs the command.
 pub(crate) fn run(args: &HeatmapArgs) -> Result<Exit, Failure> {
     require_picture(&args.picture).map_err(|failure| swapped(args).unwrap_or(failure))?;
-    let output = args.output.clone().unwrap_or_else(|| default_output(args));
+    let Some(layer) = args.layer.as_deref() else {
+        let layers = image::read_exr(&args.picture).map_err(Failure::input)?;
+        return Err(wrong_layer(&layers, "no layer is named"));
+    };
+    let output = args.output.clone().unwrap_or_else(|| default_output(&args.picture, layer));
     check_png(&output, &args.picture, "heat map")?;
     let layers = image::read_exr(&args.picture).map_err(Failure::input)?;
-    let values = values(&layers, &args.layer)?;
+    let values = values(&layers, layer)?;
     let shown = if args.log { values.map(|value| value.max(f32::MIN_POSITIVE).log10()) } else { values };
-    let picture = heat_map(&shown, &style(&shown, args));
+    let picture = heat_map(&shown, &style(&shown, args, layer));
     image::write_png(&output, &picture, Transfer::Linear).map_err(Failure::output)?;
     if !args.quiet {
         console::print(format!("wrote        {}\n", output.display()).as_bytes())?;
@@ -29,15 +33,21 @@ pub(crate) fn run(args: &HeatmapArgs) -> Result<Exit, Failure> {
 
 /// The error for swapped arguments, if the name of the layer is that of a file.
 fn swapped(args: &HeatmapArgs) -> Option<Failure> {
-    let (picture, layer) = (args.picture.display(), &args.layer);
+    let (picture, layer) = (args.picture.display(), args.layer.as_deref()?);
     require_regular(Path::new(layer)).ok()?;
     let message = format!("the picture and its layer seem to be swapped: {layer} is a file, {picture} is none");
     Some(Failure::usage(message, format!("lightcuts heatmap {layer} {picture}")))
 }
 
-fn default_output(args: &HeatmapArgs) -> PathBuf {
-    let stem = args.picture.file_stem().unwrap_or("picture".as_ref()).to_string_lossy();
-    PathBuf::from(format!("{stem}-{}.png", args.layer))
+fn default_output(picture: &Path, layer: &str) -> PathBuf {
+    let stem = picture.file_stem().unwrap_or("picture".as_ref()).to_string_lossy();
+    PathBuf::from(format!("{stem}-{layer}.png"))
+}
+
+/// The error that lists the layers.
+fn wrong_layer(layers: &Layers, message: impl Into<String>) -> Failure {
+    let names: Vec<&str> = std::iter::once(BEAUTY).chain(layers.aovs().map(|(name, _)| name)).collect();
+    Failure::usage(message, format!("expected one of {}", names.join(", ")))
 }
 
 /// A number for each pixel.
@@ -52,16 +62,12 @@ fn values(layers: &Layers, name: &str) -> Result<Plane<f32>, Failure> {
         Some(LayerData::Vector(picture)) => Ok(picture.map(length)),
         Some(LayerData::Scalar(plane) | LayerData::Depth(plane)) => Ok(plane.clone()),
         Some(LayerData::Id(plane)) => Ok(plane.map(|id| id as f32)),
-        None => {
-            let names: Vec<&str> = std::iter::once(BEAUTY).chain(layers.aovs().map(|(name, _)| name)).collect();
-            let message = format!("the picture has no layer `{name}`");
-            Err(Failure::usage(message, format!("expected one of {}", names.join(", "))))
-        }
+        None => Err(wrong_layer(layers, format!("the picture has no layer `{name}`"))),
     }
 }
 
-fn style(values: &Plane<f32>, args: &HeatmapArgs) -> HeatMap {
-    let label = if args.log { format!("log10 of {}", args.layer) } else { args.layer.clone() };
+fn style(values: &Plane<f32>, args: &HeatmapArgs, layer: &str) -> HeatMap {
+    let label = if args.log { format!("log10 of {layer}") } else { layer.to_owned() };
     if let Some(range) = args.range {
         return HeatMap { map: ColorMap::Viridis, low: range.low, high: range.high, label };
     }

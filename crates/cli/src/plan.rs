@@ -71,12 +71,7 @@ impl Sources {
         let files: Vec<JobFile> = carriers.map(JobFile::read).collect::<Result<_, _>>()?;
         let last = |path: fn(&JobFile) -> &Option<PathBuf>| files.iter().rev().find_map(|file| path(file).clone());
         let given = scene.filter(|path| !job::is_job_carrier(path)).map(Path::to_path_buf);
-        let scene_of_job = given.or_else(|| last(|file| &file.scene)).ok_or_else(|| {
-            Failure::usage(
-                "the job names no scene",
-                "give a scene on the command line, or `scene = \"file\"` in the job",
-            )
-        })?;
+        let scene_of_job = given.or_else(|| last(|file| &file.scene)).ok_or_else(|| no_scene(&files))?;
         let read_vpls = args.read_vpls.clone().or_else(|| last(|file| &file.read_vpls));
         let inputs = [scene, args.file.as_deref(), Some(&scene_of_job), read_vpls.as_deref()];
         Ok(Self {
@@ -88,6 +83,24 @@ impl Sources {
             read_vpls,
         })
     }
+}
+
+/// The error where neither the command line nor a job file names a scene.
+fn no_scene(files: &[JobFile]) -> Failure {
+    if let [file] = files
+        && file.is_empty()
+    {
+        return Failure::usage(
+            format!("{} is empty, or holds only comments: it is neither a scene nor a job", file.name()),
+            "a scene begins with the line `format = \"lightcuts-scene\"`; a job has a line `scene = \"file\"`",
+        );
+    }
+    let names: Vec<&str> = files.iter().map(JobFile::name).collect();
+    let verb = if names.len() == 1 { "names" } else { "name" };
+    Failure::usage(
+        format!("{} {verb} no scene", names.join(" and ")),
+        "give a scene on the command line, or `scene = \"file\"` in the job",
+    )
 }
 
 /// Says which options a path tracer without VPLs has no use for.

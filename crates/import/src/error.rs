@@ -8,12 +8,10 @@ use std::path::PathBuf;
 pub enum ImportError {
     /// The scene file itself cannot be read.
     #[error("cannot read the scene: {0}")]
-    #[diagnostic(code(lightcuts::import::unreadable))]
     Unreadable(#[from] FileError),
 
     /// The file is not a scene in a known format.
     #[error("{}: this is {found}; expected a scene in the thesis' text format (.txt) or in the project's own (.toml)", path.display())]
-    #[diagnostic(code(lightcuts::import::unknown_format))]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -78,10 +76,6 @@ impl fmt::Display for Faults {
 impl std::error::Error for Faults {}
 
 impl Diagnostic for Faults {
-    fn code(&self) -> Option<Box<dyn fmt::Display + '_>> {
-        Some(Box::new("lightcuts::import::invalid"))
-    }
-
     fn help(&self) -> Option<Box<dyn fmt::Display + '_>> {
         (!self.complete).then(|| Box::new(format!("the search stopped after {} errors", self.list.len())) as _)
     }

@@ -85,10 +85,9 @@ impl Fault {
         }
     }
 
-    /// The label under the marked place.
+    /// The marked place. Without a text: the message says what was expected.
     pub(crate) fn label(&self) -> LabeledSpan {
-        let text = self.expected.as_ref().map_or_else(|| "here".to_owned(), |expected| format!("expected {expected}"));
-        LabeledSpan::new_primary_with_span(Some(text), self.excerpt.mark.clone())
+        LabeledSpan::new_primary_with_span(None, self.excerpt.mark.clone())
     }
 }
 

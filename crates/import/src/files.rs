@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 pub(crate) enum AssetError {
     #[error("the {what} `{name}` was not found; searched {}", list(searched))]
     NotFound { what: &'static str, name: String, searched: Vec<PathBuf> },
-    #[error("cannot read the {what} {error}")]
+    #[error("{}the {what} {error}", lead(error))]
     File { what: &'static str, error: FileError },
     /// It was read, but holds nothing of use.
     #[error("the {what} `{name}` {reason}")]
@@ -80,6 +80,11 @@ impl<'a> Files<'a> {
     pub(crate) fn room(&self) -> usize {
         self.limits.mesh_elements.saturating_sub(self.elements)
     }
+}
+
+/// What stands before the name of a file: only the system's answer does not say by itself that it cannot be read.
+fn lead(error: &FileError) -> &'static str {
+    if matches!(error, FileError::Io { .. }) { "cannot read " } else { "" }
 }
 
 fn list(paths: &[PathBuf]) -> String {

@@ -58,7 +58,8 @@ struct GlobalFlags {
 #[derive(Debug, Default, Clone, Args, Serialize)]
 #[serde(rename_all = "kebab-case")]
 struct LocalFlags {
-    /// With `--tone-mapping local`: key value, where the mean luminance is mapped; higher is brighter [default: 0.18]
+    /// With `--tone-mapping local`: key value, what the log-average luminance is scaled to before the curve; higher is
+    /// brighter [default: 0.18]
     #[arg(id = "display.local.key", long = "local-key", value_name = "X")]
     key: Option<f32>,
     /// With `--tone-mapping local`: sharpening; higher favours small neighbourhoods [default: 8]

@@ -41,7 +41,8 @@ pub(crate) struct CausticsFlags {
     /// (progressive photon mapping).
     #[arg(id = "caustics.enabled", long = "caustics", value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     enabled: Option<bool>,
-    /// Spacing of the photons on the disk through a target's bounding sphere, in scene units [default: 1]
+    /// Spacing of the photons on the disk across the bounding sphere of an object that photons are shot at, in scene
+    /// units [default: 1]
     ///
     /// Half the spacing means finer caustics and four times as many photons.
     #[arg(id = "caustics.step", long = "caustics-step", value_name = "UNITS")]

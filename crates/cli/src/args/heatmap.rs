@@ -11,11 +11,11 @@ pub(crate) struct HeatmapArgs {
     /// An EXR that lightcuts wrote.
     #[arg(value_name = "PICTURE", value_hint = ValueHint::FilePath)]
     pub(crate) picture: PathBuf,
-    /// The layer, or `beauty`; `lightcuts info PICTURE` lists them.
+    /// The layer, or `beauty`; `lightcuts info PICTURE` lists them, and so does the error if it is left out.
     ///
     /// Colours are shown by their luminance, directions and positions by their length, ids by their number.
     #[arg(value_name = "LAYER")]
-    pub(crate) layer: String,
+    pub(crate) layer: Option<String>,
     /// File to write, .png [default: PICTURE-LAYER.png in the current folder]
     #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,

@@ -22,7 +22,7 @@ pub(crate) use develop::DevelopArgs;
 pub(crate) use device::{DeviceArgs, DevicesArgs};
 pub(crate) use experiment::ExperimentArgs;
 pub(crate) use heatmap::HeatmapArgs;
-pub(crate) use model::{command, parse, scope_of};
+pub(crate) use model::{command, counterpart_of, parse, scope_of};
 pub(crate) use render::{
     JobArgs, OutputArgs, PerformanceArgs, ProgressStyle, RenderArgs, SimdChoice, TalkArgs, ThreadArgs,
 };
@@ -129,8 +129,8 @@ pub(crate) struct InfoArgs {
 pub(crate) struct SearchArgs {
     /// Folder to search for models and textures after the scene's own; may be repeated.
     ///
-    /// Search order: next to the file that names them, next to the scene, these folders, the job's `search-path`, then
-    /// the folders in the environment variable LIGHTCUTS_PATH.
+    /// Search order: next to the file that names them, next to the scene, these folders, the `search-path` of the job
+    /// or the experiment file, if there is one, then the folders in the environment variable LIGHTCUTS_PATH.
     #[arg(long = "search-path", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) folders: Vec<PathBuf>,
 }

@@ -18,6 +18,9 @@ const OTHERS: [(&str, Model, IsGiven); 5] = [
     ("crease-angle", Model::Physical, |args| args.job.crease.angle.is_some()),
 ];
 
+/// Settings that take each other's place: of the thesis' model and of the physical one.
+const COUNTERPARTS: [[&str; 2]; 2] = [["gather.threshold", "physical.cut-error"], ["vpl.probability", "physical.vpls"]];
+
 /// What the marks in the help mean.
 const LEGEND: &str = "\
 Options marked (thesis) or (physical) belong to that model of light alone and are errors in the other one.";
@@ -46,6 +49,12 @@ pub(crate) fn command() -> Command {
 pub(crate) fn scope_of(id: &str) -> Option<Scope> {
     let other = OTHERS.iter().find(|(name, ..)| *name == id).map(|(_, model, _)| Scope::Only(*model));
     other.or_else(|| Scope::of(id))
+}
+
+/// The setting of the other model that takes the place of this one.
+pub(crate) fn counterpart_of(id: &str) -> Option<&'static str> {
+    let [of_thesis, of_physical] = COUNTERPARTS.into_iter().find(|pair| pair.contains(&id))?;
+    Some(if id == of_thesis { of_physical } else { of_thesis })
 }
 
 fn marked(arg: Arg) -> Arg {
@@ -100,10 +109,19 @@ impl SettingFlags {
 impl RenderArgs {
     /// The options given that have no meaning in a model of light, as they were typed.
     pub(crate) fn foreign_options(&self, model: Model) -> Vec<String> {
+        self.foreign(model).iter().map(|id| typed(id)).collect()
+    }
+
+    /// The options of a model of light that take the place of those given without a meaning in it, each before that
+    /// one.
+    pub(crate) fn counterparts(&self, model: Model) -> Vec<[String; 2]> {
+        self.foreign(model).iter().filter_map(|id| Some([typed(counterpart_of(id)?), typed(id)])).collect()
+    }
+
+    fn foreign(&self, model: Model) -> Vec<String> {
         let others = OTHERS.iter().filter(|(.., is_given)| is_given(self)).map(|(id, ..)| (*id).to_owned());
         let given = keys_of(&self.settings.table()).into_iter().chain(others);
-        let foreign = given.filter(|id| scope_of(id).is_some_and(|scope| !scope.includes(model)));
-        foreign.map(|id| typed(&id)).collect()
+        given.filter(|id| scope_of(id).is_some_and(|scope| !scope.includes(model))).collect()
     }
 }
 
@@ -118,6 +136,17 @@ fn typed(id: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn counterparts_are_options_of_different_models() {
+        for [of_thesis, of_physical] in COUNTERPARTS {
+            assert!(typed(of_thesis).starts_with("--") && typed(of_physical).starts_with("--"));
+            assert!(scope_of(of_thesis).is_some_and(|scope| !scope.includes(Model::Physical)), "{of_thesis}");
+            assert!(scope_of(of_physical).is_some_and(|scope| !scope.includes(Model::Thesis)), "{of_physical}");
+            assert_eq!((counterpart_of(of_thesis), counterpart_of(of_physical)), (Some(of_physical), Some(of_thesis)));
+        }
+        assert_eq!(counterpart_of("image.width"), None);
+    }
 
     #[test]
     fn marks_stand_behind_the_first_sentence() {

@@ -30,6 +30,8 @@ pub(super) struct Condition {
 pub(super) struct Failed {
     pub(super) condition: Condition,
     pub(super) value: Option<f64>,
+    /// Where Perceptual Image Diff did not pass: how many pixels differ visibly, and from how many on it does not.
+    visible: Option<[usize; 2]>,
 }
 
 /// What is wrong with the text of a condition, and where.
@@ -73,11 +75,13 @@ pub(super) fn of_display(conditions: Vec<Condition>, texts: &[String]) -> Vec<Co
     conditions.into_iter().filter(is_kept).collect()
 }
 
-/// Those that hold, in their order.
-pub(super) fn failed(conditions: &[Condition], comparison: &Comparison) -> Vec<Failed> {
+/// Those that hold, in their order. `threshold` is that of Perceptual Image Diff.
+pub(super) fn failed(conditions: &[Condition], comparison: &Comparison, threshold: usize) -> Vec<Failed> {
+    let visible = comparison.pdiff.as_ref().filter(|found| !found.pass).map(|found| [found.pixels, threshold]);
     let failing = |condition: &Condition| {
         let value = comparison.value(condition.metric);
-        let failed = Failed { condition: *condition, value };
+        let visible = visible.filter(|_| condition.metric == Metric::PdiffPass);
+        let failed = Failed { condition: *condition, value, visible };
         value.is_none_or(|value| condition.holds(value)).then_some(failed)
     };
     conditions.iter().filter_map(failing).collect()
@@ -164,6 +168,9 @@ impl fmt::Display for Condition {
 impl fmt::Display for Failed {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Condition { metric, relation, number } = self.condition;
+        if let Some([pixels, threshold]) = self.visible {
+            return write!(formatter, "{metric} fail: {pixels} pixels look different (fewer than {threshold} pass)");
+        }
         match self.value {
             None => write!(formatter, "{metric} has no value for these pictures"),
             Some(value) if value.is_nan() => write!(formatter, "{metric} is not a number"),
@@ -175,7 +182,7 @@ impl fmt::Display for Failed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lightcuts::image::metrics::Measured;
+    use lightcuts::image::metrics::{Measured, PdiffOutcome};
 
     fn parse(text: &str) -> Condition {
         Condition::parse(text).unwrap()
@@ -183,6 +190,11 @@ mod tests {
 
     fn measured(metric: Metric, value: Option<f64>) -> Comparison {
         Comparison { measured: vec![Measured { metric, value, seconds: 0.0 }], ..Comparison::default() }
+    }
+
+    /// What is said of the first condition that holds.
+    fn said(text: &str, comparison: &Comparison) -> Option<String> {
+        failed(&[parse(text)], comparison, 100).first().map(ToString::to_string)
     }
 
     #[test]
@@ -258,13 +270,22 @@ mod tests {
 
     #[test]
     fn what_failed_is_said_in_words() {
-        let said = |text, value| {
-            let found = failed(&[parse(text)], &measured(Metric::Ssim, value));
-            found.first().map(ToString::to_string)
+        let of = |value| said("ssim<0.99", &measured(Metric::Ssim, value));
+        assert_eq!(of(Some(0.995)), None);
+        assert_eq!(of(Some(0.5)).as_deref(), Some("ssim 0.5 < 0.99"));
+        assert_eq!(of(Some(f64::NAN)).as_deref(), Some("ssim is not a number"));
+        assert_eq!(of(None).as_deref(), Some("ssim has no value for these pictures"));
+    }
+
+    #[test]
+    fn visible_pixels_are_said_with_their_limit() {
+        let mask = lightcuts::image::Plane::filled(1, 1, true);
+        let found = |pass, value| Comparison {
+            pdiff: Some(PdiffOutcome { pixels: 523, pass, error_sum: 0.0, mask: mask.clone() }),
+            ..measured(Metric::PdiffPass, Some(value))
         };
-        assert_eq!(said("ssim<0.99", Some(0.995)), None);
-        assert_eq!(said("ssim<0.99", Some(0.5)).as_deref(), Some("ssim 0.5 < 0.99"));
-        assert_eq!(said("ssim<0.99", Some(f64::NAN)).as_deref(), Some("ssim is not a number"));
-        assert_eq!(said("ssim<0.99", None).as_deref(), Some("ssim has no value for these pictures"));
+        let expected = "pdiff_pass fail: 523 pixels look different (fewer than 100 pass)";
+        assert_eq!(said("pdiff_pass<1", &found(false, 0.0)).as_deref(), Some(expected));
+        assert_eq!(said("pdiff_pass>0", &found(true, 1.0)).as_deref(), Some("pdiff_pass 1 > 0"));
     }
 }

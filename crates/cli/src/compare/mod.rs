@@ -63,7 +63,7 @@ fn judge(args: &CompareArgs, logs: bool) -> Result<Exit, Failure> {
         conditions: &plan.conditions,
         inputs: &inputs,
         comparison: &comparison,
-        failed: conditions::failed(&plan.conditions, &comparison),
+        failed: conditions::failed(&plan.conditions, &comparison, plan.options.pdiff.threshold),
         written: &written,
     };
     outcome.tell()?;

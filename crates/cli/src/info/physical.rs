@@ -199,10 +199,12 @@ fn object(scene: &PhysicalScene, object: &PhysicalObject) -> Object {
         _ => (false, false),
     };
     let material = scene.materials.get(object.material.0 as usize).map_or("", |material| material.name.as_str());
+    // The mesh of boxes has no name, those of `[[mesh]]` have one.
+    let is_box = mesh.is_some_and(|mesh| mesh.name.is_empty());
     Object {
-        kind: shape_kind(&object.shape),
+        kind: if is_box { "box" } else { shape_kind(&object.shape) },
         name: object.name.clone(),
-        mesh: mesh.map(|mesh| mesh.name.clone()),
+        mesh: mesh.filter(|_| !is_box).map(|mesh| mesh.name.clone()),
         line: object.location.line,
         material: if is_own { "of the model".to_owned() } else { material.to_owned() },
         triangles: mesh.map_or(0, |mesh| mesh.triangles.len()),

@@ -3,7 +3,7 @@
 use super::diagnostic::{TOP_KEYS, toml_fault};
 use super::merge::model_in;
 use super::{kind, path};
-use crate::args::scope_of;
+use crate::args::{counterpart_of, scope_of};
 use crate::exit::{Exit, Failure};
 use crate::fault::fault;
 use lightcuts::rendering::{Model, Scope, keys_of, value_at, value_in};
@@ -107,6 +107,16 @@ impl JobFile {
         })
     }
 
+    /// How people know it.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Whether it has neither keys nor tables.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.text.parse::<Table>().is_ok_and(|table| table.is_empty())
+    }
+
     /// Where this job sets the parameter `table.key`, if it does.
     pub(super) fn span_of(&self, parameter: &str) -> Option<Range<usize>> {
         value_at(&self.text, parameter).map(|value| value.span())
@@ -160,7 +170,11 @@ impl JobFile {
         let message = format!("`{key}` has no meaning in {} of light", model.title());
         let span = self.span_of(key).unwrap_or_default();
         let label = if model == Model::Thesis { "only with --model physical" } else { "only in the thesis' model" };
-        fault(Exit::Usage, &self.name, &self.text, span, &message, label)
+        let label = counterpart_of(key).map_or_else(
+            || label.to_owned(),
+            |other| format!("{label}; `{other}` takes its place in {}", model.title()),
+        );
+        fault(Exit::Usage, &self.name, &self.text, span, &message, &label)
     }
 
     /// The complaint about a crease angle, if this job has one, for a scene in the thesis' text format.

@@ -35,8 +35,12 @@ pub(crate) fn resolve(recommended: &Settings, files: &[JobFile], flags: &Setting
             (Some(value), _) => {
                 let option = flags.option_for(&error.name);
                 // A switch is typed without its value.
-                let told = if value.is_bool() { format!("{option}:") } else { format!("{option} is {};", error.value) };
-                Failure::usage(format!("{told} expected {}", error.expected), "see `lightcuts render --help`")
+                let told = if value.is_bool() {
+                    format!("{option} needs {}", error.expected)
+                } else {
+                    format!("{option} is {}; expected {}", error.value, error.expected)
+                };
+                Failure::usage(told, "see `lightcuts render --help`")
             }
             (None, Some((file, span))) => file.out_of_range(&error, span),
             (None, None) => Failure::usage(error.to_string(), "this is what the scene recommends; set another value"),
@@ -68,7 +72,15 @@ pub(crate) fn require_fitting(args: &RenderArgs, model: Model, of_scene: Model) 
         (Model::Physical, Model::Thesis) => format!("leave {them} out, or render with --model thesis"),
         (Model::Thesis, _) => format!("leave {them} out, or render with --model physical"),
     };
-    Err(Failure::usage(message, help))
+    let counterparts = args.counterparts(model);
+    let counterparts = counterparts.iter().map(|[ours, given]| format!("{ours} takes the place of {given}"));
+    let counterparts: Vec<String> = counterparts.collect();
+    let told = if counterparts.is_empty() {
+        String::new()
+    } else {
+        format!("; in {} {}", model.title(), counterparts.join(", and "))
+    };
+    Err(Failure::usage(message, help + &told))
 }
 
 /// The model that a table of settings names.

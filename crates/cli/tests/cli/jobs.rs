@@ -83,16 +83,21 @@ fn a_typo_is_shown_with_its_line_and_the_nearest_key() {
 #[test]
 fn bad_jobs_are_bad_usage() {
     let folder = Folder::new();
-    let cases: [(&[u8], &str); 9] = [
+    let cases: [(&[u8], &str); 11] = [
         (b"scene = 'scene.txt'\n[image]\nwidth = 0\n", "job.toml:3:9: image.width is 0; expected 1 to 65536"),
         (b"scene = 'scene.txt'\n[gather]\nthreshold = nan\n", "job.toml:3:13: gather.threshold is NaN"),
         (b"scene = 'scene.txt'\n[vpl]\nprobability = 1e300\n", "job.toml:3:15: vpl.probability is inf"),
         (b"scene = 'scene.txt'\n[gather]\nstrategy = 'some'\n", "unknown value `some`"),
         (b"scene = 'scene.txt'\n[image\n", "job.toml:2:7"),
-        (b"[image]\nwidth = 8\n", "the job names no scene"),
+        (b"[image]\nwidth = 8\n", "job.toml names no scene"),
+        (b"", "job.toml is empty, or holds only comments: it is neither a scene nor a job"),
+        (
+            b"# later\n",
+            "a scene begins with the line `format = \"lightcuts-scene\"`; a job has a line `scene = \"file\"`",
+        ),
         (b"scene = ['scene.txt']\n", "job.toml:1:9: wrong kind of value: a list"),
         (b"\xff\xfe", "not UTF-8"),
-        (b"scene = 'scene.txt'\n[run]\nreproduce = true\n[image]\nwidth = 8", "512 x 512 pixels of one sample"),
+        (b"scene = 'scene.txt'\n[run]\nreproduce = true\n[image]\nwidth = 8", "expected 512 x 512 pixels"),
     ];
     for (text, expected) in cases {
         folder.write("job.toml", text);
@@ -100,7 +105,7 @@ fn bad_jobs_are_bad_usage() {
         assert!(said.contains(expected), "{expected} is missing in:\n{said}");
     }
     let said = stderr(&folder.run("render scene.txt --reproduce --size 8x8").code(2));
-    assert!(said.contains("--reproduce: expected 512 x 512 pixels of one sample"), "{said}");
+    assert!(said.contains("--reproduce needs 512 x 512 pixels"), "{said}");
     // What is not there is a scene that is not there, unless it is said to be a job.
     folder.run("render none.toml").code(3);
     folder.run("render --job none.toml").code(2);

@@ -157,6 +157,7 @@ fn scenes_of_the_thesis_can_be_rendered_with_it_and_not_the_other_way_round() {
     assert_eq!(folder.run("render scene.txt --gather stochastic").get_output().status.code(), Some(2));
     for (arguments, expected) in [
         ("ball.toml --caustics-radius 2", "--caustics-radius has no meaning in the physical model"),
+        ("ball.toml --threshold 1", "in the physical model --cut-error takes the place of --threshold"),
         ("ball.toml --max-depth 3", "--max-depth has no meaning in the physical model"),
         ("ball.toml --no-second-pass", "--no-second-pass has no meaning in the physical model"),
         ("ball.toml --bloom --ao-step 3", "--ao-step, --bloom have no meaning in the physical model"),
@@ -164,6 +165,7 @@ fn scenes_of_the_thesis_can_be_rendered_with_it_and_not_the_other_way_round() {
         ("ball.toml --write-vpls v.csv", "--write-vpls has no meaning in the physical model"),
         ("ball.toml --gpu-budget 30", "--gpu-budget has no meaning in the physical model"),
         ("scene.txt --vpls 10", "--vpls has no meaning in the thesis' model"),
+        ("scene.txt --vpls 10", "in the thesis' model --vpl-probability takes the place of --vpls"),
         ("scene.txt --integrator path", "--integrator has no meaning in the thesis' model"),
         ("scene.txt --model physical --threshold 1", "leave it out, or render with --model thesis"),
         ("scene.txt --gather auto", "--gather is auto; expected `all`, `lightcuts` or `lightcuts-exhaustive`"),
@@ -196,7 +198,8 @@ fn info_names_what_is_in_a_scene() {
     folder.write("roof.obj", "v -1 0 0\nv 0 0.2 0\nv 1 0 0\nv -1 0 1\nv 0 0.2 1\nv 1 0 1\nf 1 4 5 2\nf 2 5 6 3\n");
     let more = "[[light]]\ntype = 'spot'\nposition = [0, 3, 0]\ntarget = [0, 0, 0]\nintensity = 4\ninner = 20\nouter = 30\n\
                 [[mesh]]\nname = 'roof'\nfile = 'roof.obj'\n\
-                [[object]]\ntype = 'mesh'\nname = 'the roof'\nmesh = 'roof'\nmaterial = 'plastic'\ntranslate = [0, 2, 0]\n";
+                [[object]]\ntype = 'mesh'\nname = 'the roof'\nmesh = 'roof'\nmaterial = 'plastic'\ntranslate = [0, 2, 0]\n\
+                [[object]]\ntype = 'box'\nname = 'the box'\nmaterial = 'white'\ncenter = [0, 1, 0]\nsize = [1, 1, 1]\n";
     folder.write("roof.toml", SCENE.to_owned() + more);
     let said = stdout(&folder.run("info roof.toml").success());
     for line in [
@@ -206,6 +209,7 @@ fn info_names_what_is_in_a_scene() {
         "  1  33    spot    at (0, 3, 0), towards (0, -3, 0)",
         "intensity (4, 4, 4)",
         "mesh roof  the roof  plastic   4          (-1, 2, 0) to (1, 2.2, 1)",
+        "  box        the box   white     12         (-0.5, 0.5, -0.5) to (0.5, 1.5, 0.5)",
         "  1  lambert  white",
         "  2  plastic  plastic",
         "smoothed     1 mesh without normals, up to 40 degrees between faces",
@@ -223,6 +227,7 @@ fn info_names_what_is_in_a_scene() {
         (&roof["name"], &roof["mesh"], &roof["crease_angle"]),
         (&"the roof".into(), &"roof".into(), &40.0.into())
     );
+    assert_eq!((&info["objects"][3]["type"], &info["objects"][3]["mesh"]), (&"box".into(), &serde_json::Value::Null));
     assert_eq!(info["materials"].as_array().map(Vec::len), Some(2), "those of lights are not among them");
     assert_eq!(json("--crease-angle 25")["smoothed_meshes"], serde_json::json!({ "25": 1 }));
     assert_eq!(json("--crease-angle 20")["smoothed_meshes"], serde_json::json!({}));
@@ -286,9 +291,15 @@ fn warnings_are_shown_beside_errors() {
     folder.write("grey.toml", SCENE.to_owned() + mesh);
     let assert = folder.run("render grey.toml --size 8x8 --samples 1 --progress none").success();
     assert!(stderr(&assert).contains("`none.mtl` was not found") && stderr(&assert).contains("diffuse grey"));
-    folder.write("bad.toml", SCENE.to_owned() + mesh + "[[object]]\ntype = 'cone'\n");
+    folder.write("bad.toml", SCENE.to_owned() + mesh + "[[object]]\ntype = 'cone'\n[[object]]\ntype = 'disc'\n");
     let said = stderr(&folder.run("render bad.toml").code(3));
     assert!(said.contains("`none.mtl` was not found") && said.contains("unknown type `cone`"), "{said}");
+    assert!(said.contains("unknown type `disc`") && said.matches("expected one of").count() == 2, "{said}");
+    assert!(!said.contains("Error:") && !said.contains("lightcuts::"), "{said}");
+    std::fs::create_dir(folder.at("folder.obj")).unwrap();
+    folder.write("bad.toml", SCENE.to_owned() + "[[mesh]]\nname = 'm'\nfile = 'folder.obj'\n");
+    let said = stderr(&folder.run("render bad.toml").code(3));
+    assert!(said.contains("the model `folder.obj` is a directory; expected a regular file\n"), "{said}");
 }
 
 /// A message on one line.
@@ -339,8 +350,14 @@ fn layers_are_shown_in_false_colours() {
     folder.run("heatmap a.exr object_id -o o.png").success();
     let map = read_png(folder.at("d.png"), lightcuts::image::Transfer::Linear).unwrap();
     assert!(map.width() >= 20 && map.height() > 16, "the scale lies below");
-    let said = stderr(&folder.run("heatmap a.exr nothing").code(2));
-    assert!(said.contains("expected one of beauty, albedo"), "{said}");
+    for (command, expected) in [
+        ("heatmap a.exr nothing", "the picture has no layer `nothing`"),
+        ("heatmap a.exr -o n.png", "no layer is named"),
+    ] {
+        let said = stderr(&folder.run(command).code(2));
+        assert!(said.contains(expected) && said.contains("expected one of beauty, albedo"), "{said}");
+    }
+    folder.run("heatmap missing.exr").code(3);
     folder.run("heatmap a.exr depth -o d.exr").code(2);
     folder.run("heatmap missing.exr depth").code(3);
 }

@@ -77,11 +77,7 @@ fn parameters_out_of_range_are_told_where_they_are_set_last() {
         (point, 2, "image.width is 0; expected 1 to 65536"),
         ("[[point]]\nname = 'x'\n[point.settings.gather]\nthreshold = nan", 3, "gather.threshold is NaN"),
         ("[[point]]\nname = 'x'\nsettings = { run = { seed = 2 } }", 2, "run.seed is 2; expected `seeds = [2]`"),
-        (
-            "[[configuration]]\nname = 'b'\nsettings = { run = { reproduce = true } }",
-            2,
-            "512 x 512 pixels of one sample",
-        ),
+        ("[[configuration]]\nname = 'b'\nsettings = { run = { reproduce = true } }", 2, "expected 512 x 512 pixels"),
     ]);
     let folder = Folder::new();
     let text = with("").replace("height = 16", "height = 0");

@@ -29,7 +29,8 @@ pub(super) fn unit_cube() -> MeshDesc {
         material: None,
     };
     MeshDesc {
-        name: "box".to_owned(),
+        // Those of `[[mesh]]` have one.
+        name: String::new(),
         positions,
         normals: Vec::new(),
         texture_coordinates: CORNERS.to_vec(),

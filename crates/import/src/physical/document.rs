@@ -1,7 +1,7 @@
 //! Tables of a TOML text, with the places of their keys.
 
 use super::reader::Reader;
-use super::value::{TEXT, Value, WHOLE};
+use super::value::{NUMBER, TEXT, Value, WHOLE};
 use super::words::{did_you_mean, listed};
 use crate::source::Source;
 use crate::{Fault, ImportError, Limits};
@@ -17,6 +17,9 @@ const VERSION: i64 = 1;
 
 /// Tables by which a scene is known that lacks its head.
 const TABLES: [&str; 6] = ["camera", "environment", "material", "mesh", "object", "light"];
+
+/// What the TOML reader says of numbers with a mistake.
+const INVALID_FLOAT: &str = "invalid float";
 
 /// What a person reads who opens another file.
 const HEADER_EXAMPLE: &str = "a scene that starts with `format = \"lightcuts-scene\"` and `version = 1`";
@@ -44,13 +47,33 @@ pub(super) fn parse<'d>(source: &'d Source<'d>, limits: &Limits) -> Result<Spann
 
 fn toml_fault(source: &Source<'_>, error: &toml::de::Error) -> Fault {
     let (message, expected) = error.message().split_once(", expected ").unwrap_or((error.message(), ""));
-    source.fault(error.span().unwrap_or_default(), message).expected(expected)
+    let span = error.span().unwrap_or_default();
+    if message == INVALID_FLOAT {
+        // What the reader expects is part of one, or a word such as `nan`, which scenes refuse.
+        let span = word_around(source.text(), span.start);
+        let message = format!("`{}` is not a number", &source.text()[span.clone()]);
+        return source.fault(span, &message).expected(NUMBER.expected);
+    }
+    source.fault(span, message).expected(if expected == "nothing" { "" } else { expected })
+}
+
+/// The value around `offset`, if it is a number or ought to be one.
+fn word_around(text: &str, offset: usize) -> Range<usize> {
+    let offset = text.floor_char_boundary(offset.min(text.len()));
+    let is_part = |c: char| !c.is_whitespace() && !"=,[]{}#".contains(c);
+    let start = text[..offset].trim_end_matches(is_part).len();
+    let end = text.len() - text[offset..].trim_start_matches(is_part).len();
+    start..end
 }
 
 /// Jobs and other files are TOML too.
 fn check_header(source: &Source<'_>, document: &Spanned<DeTable<'_>>) -> Result<(), ImportError> {
     let table = Table::of(document);
     if table.get("format").is_none() {
+        if let Some((key, span)) = table.misspelt_format() {
+            let message = format!("unknown key `{key}` of a scene: did you mean `format`?");
+            return Err(source.fault(span, &message).expected(HEADER_EXAMPLE).into());
+        }
         let part = TABLES.iter().find_map(|key| Some((*key, table.get(key)?)));
         let message = match part {
             Some((key, value)) => {
@@ -103,6 +126,15 @@ impl<'d> Table<'d> {
         self.get(key).is_some()
     }
 
+    /// A key like `format`, or any key with what `format` says.
+    fn misspelt_format(self) -> Option<(&'d str, Range<usize>)> {
+        let is_like = |key: &str, value: &DeValue<'_>| {
+            value.as_str() == Some(FORMAT) || (value.is_str() && did_you_mean(key, &["format"]).contains("`format`"))
+        };
+        let mut near = self.entries.iter().filter(|(key, value)| is_like(key.get_ref().as_ref(), value.get_ref()));
+        near.next().map(|(key, _)| (key.get_ref().as_ref(), key.span()))
+    }
+
     /// Reports keys that are not among `known`; `what` is the table: `a sphere`. `None` if there are some: what else there is to
     /// say of the table may follow from them.
     pub(super) fn check_keys(self, reader: &mut Reader<'_>, what: &str, known: &[&[&'static str]]) -> Option<()> {
@@ -141,6 +173,12 @@ mod tests {
             "{headless}"
         );
         assert!(message("[camera]\n").contains("there is a `[camera]`"));
+        for (text, key) in [("version = 1\nformt = 'lightcuts-scene'", "formt"), ("\nFormat = 'x'\n[camera]", "Format")]
+        {
+            let expected =
+                format!("a.toml:2:1: unknown key `{key}` of a scene: did you mean `format`?; expected a scene");
+            assert!(message(text).starts_with(&expected), "{}", message(text));
+        }
         assert!(message("format = \"x\"\nversion = 1").starts_with("a.toml:1:10: `format` is `x`; expected a scene"));
         assert!(message("format = 3").starts_with("a.toml:1:10: `format` is a number; expected a string"));
         assert!(message("format = \"lightcuts-scene\"").starts_with("a.toml:1:1: `version` is missing; expected"));
@@ -152,6 +190,13 @@ mod tests {
     fn broken_toml_is_placed() {
         assert_eq!(message("a = 1\nb = [1,\n"), "a.toml:2:8: unclosed array; expected `]`");
         assert_eq!(message("a = 1\na = 2"), "a.toml:2:1: duplicate key");
+        for (text, column, number) in
+            [("a = np.5", 5, "np.5"), ("a = 0.5.3", 5, "0.5.3"), ("a = [1, nx]", 9, "nx"), ("a = { b = i }", 11, "i")]
+        {
+            let expected = format!("a.toml:1:{column}: `{number}` is not a number; expected a number such as 1.5");
+            assert_eq!(message(text), expected, "{text}");
+        }
+        assert_eq!(message("a = 01"), "a.toml:1:5: unexpected leading zero");
         let deep = format!("a = {}", "[".repeat(100_000));
         assert!(message(&deep).starts_with("a.toml:1:"), "{}", message(&deep));
         let source = Source::new("a.toml", "a = 1");

@@ -67,8 +67,8 @@ impl<'d> Builder<'d> {
         let file = self.reader.required(table, "file", FILE)?;
         let mesh = match self.model(table, &name, &file) {
             Ok(mesh) => mesh?,
-            Err(message) => {
-                self.reader.error_at(table, "file", &message, FILES);
+            Err((message, expected)) => {
+                self.reader.error_at(table, "file", &message, expected);
                 return None;
             }
         };
@@ -76,15 +76,17 @@ impl<'d> Builder<'d> {
         Some(())
     }
 
-    /// The mesh of the model in file `file`, read at its first use. `Ok(None)` if it has errors, which are reported.
-    fn model(&mut self, table: Table<'d>, name: &str, file: &str) -> Result<Option<MeshId>, String> {
-        let told = |error: AssetError| error.to_string();
+    /// The mesh of the model in file `file`, read at its first use. `Ok(None)` if it has errors, which are reported;
+    /// `Err` if it cannot be read: the message, and what was expected.
+    fn model(&mut self, table: Table<'d>, name: &str, file: &str) -> Result<Option<MeshId>, (String, &'static str)> {
+        let told = |error: AssetError| (error.to_string(), error.expected(FILES));
         let path = self.files.find("model", file, None).map_err(told)?;
         let identity = self.files.identity(&path);
         if let Some(known) = self.models.files.get(&identity) {
             return Ok(*known);
         }
-        let format = ModelFormat::of(&path).ok_or_else(|| format!("`{file}` ends neither in .obj nor in .ply"))?;
+        let format =
+            ModelFormat::of(&path).ok_or_else(|| (format!("`{file}` ends neither in .obj nor in .ply"), FILES))?;
         let span = table.get("file").map_or(table.span(), Value::span);
         let place = self.reader.source.fault(span, "");
         let model = Model::load(&mut self.files, &path, format, Cut::Outlines, &place, &mut self.reader.report)

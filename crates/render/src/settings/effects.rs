@@ -39,8 +39,8 @@ impl AmbientOcclusion {
 pub struct Caustics {
     /// Whether photons are shot.
     pub enabled: bool,
-    /// Spacing of the photons on the disk through a target's bounding sphere, in scene units; wider where all lights
-    /// and targets together would take more than 2^26 photons.
+    /// Spacing of the photons on the disk across the bounding sphere of an object they are shot at, in scene units; wider
+    /// where all lights and objects together would take more than 2^26 photons.
     pub step: f32,
     /// Radius of the gathered disk, in scene units.
     pub radius: f32,

@@ -46,9 +46,9 @@ impl Settings {
         if !self.run.reproduce {
             return Ok(());
         }
-        ensure("run.reproduce", true, self.run.model == Model::Thesis, "the thesis' model with it")?;
+        ensure("run.reproduce", true, self.run.model == Model::Thesis, "the thesis' model")?;
         let plain = self.image == ImageSize::default() && self.sampling.samples == 1 && self.adaptive_extra() == 0;
-        ensure("run.reproduce", true, plain, "512 x 512 pixels of one sample with it")
+        ensure("run.reproduce", true, plain, "512 x 512 pixels and one sample per pixel")
     }
 
     /// Whether time or noise ends a render of the physical model.
