@@ -40,8 +40,10 @@ impl Engine {
 
     fn tone_local(&mut self, image: &Image, operator: &LocalToneMapping) -> Result<Image, DeviceFault> {
         self.upload_picture(image)?;
-        let logarithms = self.measure(image)?.into_iter().map(|[_, log]| f64::from(log)).sum::<f64>();
-        let average = (logarithms / image.pixels().len() as f64).exp2();
+        // Black pixels are left out.
+        let lit = self.measure(image)?.into_iter().filter(|[y, _]| *y > 0.0);
+        let (sum, count) = lit.fold((0.0, 0), |(sum, count), [_, log]| (sum + f64::from(log), count + 1));
+        let average = if count == 0 { 1.0 } else { (sum / f64::from(count)).exp2() };
         let exposure = (f64::from(operator.key) / average) as f32;
         let bytes = image.pixels().len() as u64 * 4;
         for name in ["plane_in", "plane_out", "plane_luminance"] {

@@ -9,7 +9,8 @@ use crate::{Image, ImageError, Plane};
 
 /// Width of the smallest centre: `1 / (2 sqrt 2)`, which puts two standard deviations at one pixel (Reinhard 2002).
 const CENTRE_WIDTH: f64 = 0.353_553_390_593_273_8;
-/// Added before the logarithm, so that black pixels do not drive the average to 0 (Reinhard 2002, equation 1).
+/// Added before the logarithm, so that pixels which are almost black do not drive the average to 0 (Reinhard 2002,
+/// equation 1).
 const LOG_DELTA: f64 = 1e-6;
 /// A Gaussian `exp(-(d / w)^2)` is cut off at this many widths, where it is 1e-4.
 const GAUSSIAN_REACH: f64 = 3.0;
@@ -23,8 +24,9 @@ const MAX_SCALES: u32 = 24;
 /// luminance V1 around it, and becomes `L / (1 + V1)`: a dark pixel in a bright surrounding is darkened ("burned"), a
 /// bright one in a dark surrounding is held back, so that local contrast survives. Colours keep their ratios.
 ///
-/// The Gaussians are cut off at three widths and divided by their weights inside the picture: the paper uses an FFT,
-/// which wraps around.
+/// Differs: black pixels are left out of the average, for an empty background would make everything else white; and the
+/// Gaussians are cut off at three widths and divided by their weights inside the picture: the paper uses an FFT, which
+/// wraps around.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LocalToneMapping {
@@ -104,11 +106,16 @@ impl LocalToneMapping {
     }
 }
 
-/// `exp(mean(log(delta + L)))`. Rows are summed in parallel, the row sums in order: the same on any number of threads.
+/// `exp(mean(log(delta + L)))` of all pixels that are not black; 1 if all are. Rows are summed in parallel, the row sums in
+/// order: the same on any number of threads.
 fn log_average(luminance: &Plane<f64>) -> f64 {
-    let row_sum = |row: &[f64]| row.iter().map(|value| (LOG_DELTA + value).ln()).sum::<f64>();
-    let sums: Vec<f64> = luminance.pixels().par_chunks(luminance.width()).map(row_sum).collect();
-    (sums.iter().sum::<f64>() / luminance.pixels().len() as f64).exp()
+    let lit = |row: &[f64]| row.iter().filter(|value| **value > 0.0).count();
+    let row_sum =
+        |row: &[f64]| -> f64 { row.iter().filter(|value| **value > 0.0).map(|value| (LOG_DELTA + value).ln()).sum() };
+    let rows = luminance.pixels().par_chunks(luminance.width());
+    let sums: Vec<(f64, usize)> = rows.map(|row| (row_sum(row), lit(row))).collect();
+    let (sum, count) = sums.into_iter().fold((0.0, 0), |(sum, count), row| (sum + row.0, count + row.1));
+    if count == 0 { 1.0 } else { (sum / count as f64).exp() }
 }
 
 /// The picture under a Gaussian `exp(-(d / width)^2)`, `width` in pixels, normalised inside the picture.
@@ -160,6 +167,19 @@ mod tests {
             let tolerance = if value < 1.0 { 1e-3 } else { 1e-5 }; // the delta of the logarithm counts in the dark
             assert!(result.pixels().iter().flatten().all(|v| (v / expected - 1.0).abs() < tolerance), "{value}");
         }
+    }
+
+    #[test]
+    fn a_black_background_changes_nothing_else() {
+        let of_width = |lit: usize| {
+            let pixels = (0..64 * 64).map(|k| if k % 64 < lit { [0.3; 3] } else { [0.0; 3] });
+            let operator = LocalToneMapping { scales: 1, ..LocalToneMapping::default() };
+            operator.apply(&Image::from_pixels(64, 64, pixels.collect()).unwrap())
+        };
+        let (whole, partial) = (of_width(64), of_width(20));
+        assert!((whole.get(3, 30)[0] / partial.get(3, 30)[0] - 1.0).abs() < 1e-5);
+        assert_eq!(partial.get(60, 30), [0.0; 3]);
+        assert!(of_width(0).pixels().iter().all(|pixel| *pixel == [0.0; 3]));
     }
 
     #[test]
