@@ -13,7 +13,8 @@ pub(crate) struct VplFlags {
     /// It applies to 512 x 512 pixels with one sample each; other pictures divide it among their camera rays, so that
     /// the number of VPLs does not depend on size and samples. The effective probability is about 30.5 times as high,
     /// as in the original: (floor(p 10^6) + 1) / 32768. More VPLs give smoother indirect light and a brighter picture
-    /// (the thesis does not divide by their number): lower --vpl-attenuation in proportion.
+    /// (the thesis does not divide by their number): to keep the brightness, lower --vpl-attenuation, a factor on their
+    /// light, in proportion.
     #[arg(id = "vpl.probability", long = "vpl-probability", value_name = "P")]
     probability: Option<f32>,
     /// Minimum r + g + b of a hit's colour for it to become a VPL, 0 to 3 [default: the scene's, else 0.7]
