@@ -101,10 +101,12 @@ pub fn safe_reciprocal(direction: Vec3) -> Vec3 {
     Vec3::new(safe_component(direction.x), safe_component(direction.y), safe_component(direction.z))
 }
 
+/// What smaller components count as in [`safe_reciprocal`].
+pub const SAFE_LEAST: f32 = 1e-20;
+
 /// One component of [`safe_reciprocal`].
 pub fn safe_component(c: f32) -> f32 {
-    const TINY: f32 = 1e-20;
-    1.0 / if c.abs() < TINY { TINY.copysign(c) } else { c }
+    1.0 / if c.abs() < SAFE_LEAST { SAFE_LEAST.copysign(c) } else { c }
 }
 
 /// `v` times the reciprocal of its length, or zero where it has none.

@@ -1,6 +1,7 @@
 const ORIGINAL_EPSILON: f32 = 0.001;
 const RELATIVE_EPSILON: f32 = 2e-5;
 const SLAB_SLACK: f32 = 1.0 + 4e-7;
+const SAFE_LEAST: f32 = 1e-20;
 const NONE: u32 = 0xffffffffu;
 // Stands for infinity, which the language does not spell: larger than any distance.
 const FAR: f32 = 3.40282346638528859812e+38;
@@ -47,8 +48,8 @@ fn shadow_ray(rules: u32, point: vec3<f32>, to_light: vec3<f32>, epsilon: f32) -
 }
 
 fn safe_component(c: f32) -> f32 {
-    if (abs(c) < 1e-20) {
-        return 1.0 / copy_sign(1e-20, c);
+    if (abs(c) < SAFE_LEAST) {
+        return 1.0 / copy_sign(SAFE_LEAST, c);
     }
     return 1.0 / c;
 }

@@ -16,7 +16,7 @@ use bytemuck::cast_ref;
 use glam::Vec3;
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{Sphere, Square};
-use lightcuts_kernel::ray::{END_SLACK, ORIGINAL_EPSILON, Ray, SLAB_SLACK};
+use lightcuts_kernel::ray::{END_SLACK, ORIGINAL_EPSILON, Ray, SAFE_LEAST, SLAB_SLACK};
 use lightcuts_world::bvh::{Geometry, LANES, TriangleBlock};
 use std::arch::x86_64::{
     __m256, _CMP_GE_OQ, _CMP_GT_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _CMP_NEQ_OQ, _mm256_add_ps, _mm256_and_ps,
@@ -96,7 +96,7 @@ pub(super) fn occluded_lanes(tracer: &Tracer<'_>, rays: &RayLanes, asked: u32) -
 #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
 pub(super) fn safe_reciprocal(c: __m256) -> __m256 {
     let sign_bit = _mm256_set1_ps(-0.0);
-    let tiny = _mm256_set1_ps(1e-20);
+    let tiny = _mm256_set1_ps(SAFE_LEAST);
     let signed_tiny = _mm256_or_ps(tiny, _mm256_and_ps(sign_bit, c));
     let is_small = _mm256_cmp_ps::<_CMP_LT_OQ>(_mm256_andnot_ps(sign_bit, c), tiny);
     _mm256_div_ps(_mm256_set1_ps(1.0), _mm256_blendv_ps(c, signed_tiny, is_small))

@@ -8,10 +8,10 @@
 
 use super::avx2_watertight::{WideShear, hit_watertight};
 use super::stack::Stack;
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 use lightcuts_kernel::Rules;
 use lightcuts_kernel::intersect::{intersect_sphere, intersect_square, min_determinant};
-use lightcuts_kernel::ray::{END_SLACK, Hit, Ray, SLAB_SLACK, safe_reciprocal};
+use lightcuts_kernel::ray::{END_SLACK, Hit, Ray, SAFE_LEAST, SLAB_SLACK};
 use lightcuts_kernel::rounding::UNIT;
 use lightcuts_kernel::watertight::Shear;
 use lightcuts_world::bvh::{BvhNode, ChildRef, Geometry, LANES, MAX_LEVELS, STACK_SIZE, TriangleBlock};
@@ -121,6 +121,12 @@ pub(super) fn cross_triangles(
 /// rounded four times, and not from the sides' distances as in the plain version.
 const START_ERROR: f32 = 4.0 * UNIT;
 
+/// `kernel::ray::safe_reciprocal`, of all components at once.
+fn safe_reciprocal(direction: Vec3A) -> Vec3A {
+    let tiny = Vec3A::splat(SAFE_LEAST);
+    Vec3A::select(direction.abs().cmplt(tiny), tiny.copysign(direction), direction).recip()
+}
+
 /// A ray in all lanes, to meet boxes.
 struct BoxRay {
     reciprocal: Wide3,
@@ -137,15 +143,17 @@ struct BoxRay {
 impl BoxRay {
     #[target_feature(enable = "avx2,fma,bmi1,popcnt")]
     fn new(ray: &Ray) -> Self {
-        let reciprocal = safe_reciprocal(ray.direction);
-        let start = ray.origin * reciprocal;
+        // As vectors of SSE: a third of the work.
+        let reciprocal = safe_reciprocal(ray.direction.into());
+        let start = Vec3A::from(ray.origin) * reciprocal;
         let error = start.abs() * START_ERROR;
+        let signs = reciprocal.is_negative_bitmask() as usize;
         Self {
-            reciprocal: splat3(reciprocal),
-            start: splat3(start + error),
-            far_reciprocal: splat3(reciprocal * SLAB_SLACK),
-            far_start: splat3((start - error) * SLAB_SLACK),
-            backwards: reciprocal.to_array().map(|c| usize::from(c < 0.0)),
+            reciprocal: splat3(reciprocal.into()),
+            start: splat3((start + error).into()),
+            far_reciprocal: splat3((reciprocal * SLAB_SLACK).into()),
+            far_start: splat3(((start - error) * SLAB_SLACK).into()),
+            backwards: [signs & 1, signs >> 1 & 1, signs >> 2 & 1],
             t_min: _mm256_set1_ps(ray.t_min),
         }
     }
