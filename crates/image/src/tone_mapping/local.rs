@@ -109,11 +109,11 @@ impl LocalToneMapping {
 /// `exp(mean(log(delta + L)))` of all pixels that are not black; 1 if all are. Rows are summed in parallel, the row sums in
 /// order: the same on any number of threads.
 fn log_average(luminance: &Plane<f64>) -> f64 {
-    let lit = |row: &[f64]| row.iter().filter(|value| **value > 0.0).count();
-    let row_sum =
-        |row: &[f64]| -> f64 { row.iter().filter(|value| **value > 0.0).map(|value| (LOG_DELTA + value).ln()).sum() };
-    let rows = luminance.pixels().par_chunks(luminance.width());
-    let sums: Vec<(f64, usize)> = rows.map(|row| (row_sum(row), lit(row))).collect();
+    let row_sum = |row: &[f64]| {
+        let lit = row.iter().filter(|value| **value > 0.0);
+        lit.fold((0.0, 0_usize), |(sum, count), value| (sum + (LOG_DELTA + value).ln(), count + 1))
+    };
+    let sums: Vec<(f64, usize)> = luminance.pixels().par_chunks(luminance.width()).map(row_sum).collect();
     let (sum, count) = sums.into_iter().fold((0.0, 0), |(sum, count), row| (sum + row.0, count + row.1));
     if count == 0 { 1.0 } else { (sum / count as f64).exp() }
 }

@@ -91,6 +91,17 @@ fn floors_have_no_seams() {
     }
 }
 
+/// Drawn in a cube of 2 units about the origin: a place within, and one at a corner, on an edge, or on a side.
+fn within_cube(k: u32, what: u32) -> (Vec3, Vec3) {
+    let [x, y, z, which] = random4(k, what, 0, 96);
+    let [a, b, c, _] = random4(k, what + 1, 0, 96);
+    let mut target = Vec3::new(x, y, z) * 2.0 - 1.0;
+    for axis in 0..[3, 2, 1][(which * 3.0) as usize % 3] {
+        target[axis] = target[axis].signum();
+    }
+    (Vec3::new(a, b, c) * 2.0 - 1.0, target)
+}
+
 /// From within a closed cube every ray ends at it, right to its edges and corners too.
 #[test]
 fn cubes_have_no_seams() {
@@ -100,14 +111,8 @@ fn cubes_have_no_seams() {
         let tracer = Tracer::new(world.shapes.geometry(), Rules::Repaired, Simd::Auto);
         let there = |p: Vec3| (placement.transform_point3(p.as_dvec3()) - world.origin).as_vec3();
         for k in 0..40_000 {
-            let [x, y, z, which] = random4(k, 2, 0, 96);
-            let [a, b, c, _] = random4(k, 3, 0, 96);
-            let origin = there((Vec3::new(a, b, c) * 2.0 - 1.0) * 0.999);
-            let mut target = Vec3::new(x, y, z) * 2.0 - 1.0;
-            // On an edge of the cube, a corner, or a side.
-            for axis in 0..[3, 2, 1][(which * 3.0) as usize % 3] {
-                target[axis] = target[axis].signum();
-            }
+            let (place, target) = within_cube(k, 2);
+            let origin = there(place * 0.999);
             let ray =
                 Ray { origin, direction: there(target) - origin, t_min: 0.0, t_max: f32::INFINITY, inside: false };
             let hit = tracer.closest(&ray);
@@ -147,13 +152,8 @@ fn sheets_given_far_from_their_origin_join() {
         let tracer = Tracer::new(world.shapes.geometry(), Rules::Repaired, Simd::Auto);
         let there = |p: Vec3| (place + turn.transform_vector3(p.as_dvec3() * size) - world.origin).as_vec3();
         for k in 0..100_000 {
-            let [x, y, z, which] = random4(k, 5, 0, 96);
-            let [a, b, c, _] = random4(k, 6, 0, 96);
-            let origin = there((Vec3::new(a, b, c) * 2.0 - 1.0) * 0.98);
-            let mut target = Vec3::new(x, y, z) * 2.0 - 1.0;
-            for axis in 0..[3, 2, 1][(which * 3.0) as usize % 3] {
-                target[axis] = target[axis].signum();
-            }
+            let (place, target) = within_cube(k, 5);
+            let origin = there(place * 0.98);
             let direction = there(target) - origin;
             let ray = Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, inside: false };
             assert!(tracer.closest(&ray).is_some(), "{distance}, {digits}, {k}: {ray:?}");
